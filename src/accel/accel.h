@@ -1,0 +1,72 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * Accelerators: closest hit and occlusion for a batch of rays.
+ *
+ * All work in double on the shapes of a scene, in render space, with the same kernels (accel/kernels.h): `list` and `bvh` give the same
+ * bits. A hit is the crossing of smallest t > 0; of equal ones that of the lowest primitive number. Immutable after creation, so that any number
+ * of threads may ask at once.
+ */
+#ifndef MCR_ACCEL_ACCEL_H
+#define MCR_ACCEL_ACCEL_H
+
+#include "base/arena.h"
+#include "scene/scene.h"
+
+/* n rays; directions are unit. Arrays are 64-byte aligned and padded to 8: the padding is read and computed with, its results are garbage. */
+struct mcr_rays {
+    uint32_t n;
+    const double *ox, *oy, *oz;
+    const double *dx, *dy, *dz;
+};
+
+/* Lanes that the list handles at once, so that rays and results stay in the first-level cache. */
+#define MCR_ACCEL_BLOCK 64u
+
+/*
+ * A shape as the kernels want it: k is, by kind,
+ *   plane          point, normal
+ *   parallelogram, disk   corner or centre, normal, dual vectors of the two edges or half axes
+ *   sphere         centre, radius, radius^2
+ *   ellipsoid      centre, rows of the inverse of the half axes
+ *   box            corner, dual vectors of the three edges
+ */
+struct mcr_accel_shape {
+    uint32_t kind;
+    uint32_t primitive;
+    double k[12];
+};
+
+struct mcr_bvh_node {
+    double lo[3], hi[3];  /* rounded outward */
+    uint32_t first;       /* inner: the left child, the right one follows it; leaf: the first of its items */
+    uint32_t count;       /* leaf: items, else 0 */
+};
+
+struct mcr_accel {
+    uint32_t kind;        /* MCR_ACCEL_LIST or MCR_ACCEL_BVH */
+    uint32_t shape_count;
+    struct mcr_accel_shape *shape;            /* in order of their primitive numbers */
+    const struct mcr_triangles *triangles;
+    /* bvh only */
+    uint32_t plane_count;
+    uint32_t *plane;                          /* shapes without bounds, asked for every ray */
+    uint32_t node_count;
+    struct mcr_bvh_node *node;
+    uint32_t *item;                           /* a shape's index, or shape_count + a triangle's */
+};
+
+/* kind: MCR_ACCEL_*; auto takes the list for few shapes. NULL when memory is short. */
+struct mcr_accel *mcr_accel_create(struct mcr_arena *arena, const struct mcr_scene *scene, uint32_t kind);
+
+/* One set of these for each instruction set. */
+struct mcr_accel_functions {
+    /* Stores t (infinity for a miss) and the primitive's number (-1). */
+    void (*closest)(const struct mcr_accel *accel, const struct mcr_rays *rays, double *t, int64_t *primitive);
+    /* `far` holds each ray's length; stores 1 where nothing is crossed at 0 < t < far, else 0. */
+    void (*visible)(const struct mcr_accel *accel, const struct mcr_rays *rays, const double *far, double *visible);
+};
+
+/* The list first, then the bvh; instruction sets 1 and 2 on x86-64 only. */
+extern const struct mcr_accel_functions mcr_accel_functions_isa0[2], mcr_accel_functions_isa1[2], mcr_accel_functions_isa2[2];
+
+#endif

@@ -1,0 +1,12 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* The commands. Each returns the exit status. */
+#ifndef MCR_CLI_COMMANDS_H
+#define MCR_CLI_COMMANDS_H
+
+#include "cli/options.h"
+
+int mcr_command_render(struct mcr_options *options);
+int mcr_command_check(struct mcr_options *options);
+int mcr_command_plugins(struct mcr_options *options);
+
+#endif

@@ -1,0 +1,23 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* A scene and what it lives on: what `mcrender SCENE` and `mcrender check SCENE` have in common. */
+#ifndef MCR_CLI_LOAD_H
+#define MCR_CLI_LOAD_H
+
+#include "cli/options.h"
+
+struct mcr_loaded_scene {
+    struct mcr_arena *arena;
+    struct mcr_diagnostics *diagnostics;
+    struct mcr_registry *registry;
+    struct mcr_scene *scene;           /* NULL after errors */
+    double parse_seconds, build_seconds;
+};
+
+/* Parses and builds; prints diagnostics on stderr. Returns an exit status. End with mcr_unload in any case. */
+int mcr_load(struct mcr_loaded_scene *loaded, struct mcr_options *options);
+void mcr_unload(struct mcr_loaded_scene *loaded);
+
+/* Prints what was recorded since the last time. */
+void mcr_print_diagnostics(struct mcr_diagnostics *diagnostics);
+
+#endif

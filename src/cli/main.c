@@ -1,0 +1,35 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+#include <string.h>
+
+#include "cli/commands.h"
+
+int main(int argc, char **argv)
+{
+    static const struct {
+        const char *name;
+        int (*run)(struct mcr_options *options);
+        int needs_operand;
+    } commands[] = {{"", mcr_command_render, 1}, {"check", mcr_command_check, 1}, {"plugins", mcr_command_plugins, 0}};
+    struct mcr_options options;
+    size_t c = 0;
+    for (size_t i = 1; argc > 1 && i < sizeof commands / sizeof *commands; i++)
+        if (!strcmp(argv[1], commands[i].name))
+            c = i;
+    int status = mcr_options_parse(&options, commands[c].name, c ? argc - 1 : argc, c ? argv + 1 : argv);
+    if (!status && options.help) {
+        mcr_options_help(stdout);
+    } else if (!status && options.version) {
+        puts("mcrender " PACKAGE_VERSION);
+    } else if (!status && commands[c].needs_operand && !options.scene) {
+        fprintf(stderr, "mcrender: error: a scene file is expected (see mcrender --help)\n");
+        status = MCR_EXIT_USAGE;
+    } else if (!status) {
+        status = commands[c].run(&options);
+    }
+    mcr_options_fini(&options);
+    if (fflush(stdout) || ferror(stdout)) {
+        fprintf(stderr, "mcrender: error: standard output could not be written\n");
+        status = status ? status : MCR_EXIT_FAILED;
+    }
+    return status;
+}

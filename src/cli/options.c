@@ -1,0 +1,316 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+#include "cli/options.h"
+
+#include <errno.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/cpu.h"
+
+enum option_id {
+    OUTPUT, SPP, DEPTH, SEED, THREADS, SAMPLER, SIZE, CROP, PRECISION, ACCEL, ISA, BATCH, SET, PLUGIN, REPORT, PROFILE, BITS, EXPOSURE, QUIET, WERROR,
+    HELP, VERSION
+};
+
+/* Where an option may stand. */
+enum { RENDER = 1, CHECK = 2, PLUGINS = 4, ALL = 7 };
+
+static const struct option {
+    enum option_id id;
+    int where;
+    const char *name, *argument, *text;
+} table[] = {
+    {OUTPUT, RENDER, "-o", "FILE", "write here; several allowed; '-' is standard output (PPM); the extension tells the format"},
+    {SPP, RENDER | CHECK, "--spp", "N", "samples per pixel"},
+    {DEPTH, RENDER | CHECK, "--depth", "N", "scattering events at most; 0 shows emission only"},
+    {SEED, RENDER | CHECK, "--seed", "N", "of the random numbers"},
+    {THREADS, RENDER | CHECK, "--threads", "N", "0: as many as there are processors; never changes the image"},
+    {SAMPLER, RENDER | CHECK, "--sampler", "EXPR", "e.g. 'stratified(mixture(cosine 1, light 1))'"},
+    {SIZE, RENDER | CHECK, "--size", "WxH", "of the picture, in pixels"},
+    {CROP, RENDER | CHECK, "--crop", "X0,Y0,X1,Y1", "render this part, from the upper left corner"},
+    {PRECISION, RENDER | CHECK, "--precision", "double", "of intersections"},
+    {ACCEL, RENDER | CHECK, "--accel", "KIND", "auto, list or bvh"},
+    {ISA, RENDER | CHECK | PLUGINS, "--isa", "NAME", "baseline, avx2 or avx512; never changes the image"},
+    {BATCH, RENDER | CHECK, "--batch", "N", "paths that a thread handles at once; never changes the image"},
+    {SET, RENDER | CHECK, "--set", "NAME=VALUE", "replaces the scene's `let NAME`"},
+    {PLUGIN, ALL, "--plugin", "FILE", "use this plugin file before all others"},
+    {REPORT, RENDER, "--report", "FILE", "write the report as JSON"},
+    {PROFILE, RENDER, "--profile", NULL, "time the stages of the core"},
+    {BITS, RENDER, "--bits", "8|16", "of PPM and PNG"},
+    {EXPOSURE, RENDER, "--exposure", "STOPS", "brightens PPM and PNG by 2^STOPS"},
+    {QUIET, RENDER | CHECK, "--quiet", NULL, "errors and warnings only"},
+    {WERROR, RENDER | CHECK, "--werror", NULL, "warnings are errors"},
+    {HELP, ALL, "--help", NULL, "this text"},
+    {VERSION, ALL, "--version", NULL, "the version"},
+};
+#define OPTIONS (sizeof table / sizeof *table)
+
+void mcr_options_help(FILE *to)
+{
+    fputs("Usage: mcrender SCENE [-o FILE]... [OPTION]...   render\n"
+          "       mcrender check SCENE [OPTION]...          parse and build only\n"
+          "       mcrender plugins [NAME]                   list plugins, or explain one\n\n",
+          to);
+    for (size_t i = 0; i < OPTIONS; i++) {
+        char left[32];
+        snprintf(left, sizeof left, "%s%s%s", table[i].name, table[i].argument ? " " : "", table[i].argument ? table[i].argument : "");
+        fprintf(to, "  %-22s %s\n", left, table[i].text);
+    }
+    fputs("\nExit status: 0 done, 1 failed, 2 usage, 3 scene error, 130 interrupted after saving.\n", to);
+}
+
+static int usage_error(const char *format, ...) __attribute__((format(printf, 1, 2)));
+static int usage_error(const char *format, ...)
+{
+    va_list arguments;
+    fputs("mcrender: error: ", stderr);
+    va_start(arguments, format);
+    vfprintf(stderr, format, arguments);
+    va_end(arguments);
+    fputs("\n", stderr);
+    return MCR_EXIT_USAGE;
+}
+
+/* A whole decimal number in lo .. hi. */
+static int whole(const char *option, const char *text, uint64_t lo, uint64_t hi, uint64_t *out)
+{
+    char *end;
+    errno = 0;
+    unsigned long long value = strtoull(text, &end, 10);
+    if (text[0] < '0' || text[0] > '9' || *end || errno || value < lo || value > hi)
+        return usage_error("%s expects a whole number from %llu to %llu, not '%s'", option, (unsigned long long)lo, (unsigned long long)hi, text);
+    *out = value;
+    return 0;
+}
+
+static int whole32(const char *option, const char *text, uint32_t lo, uint32_t hi, uint32_t *out, int *has)
+{
+    uint64_t value;
+    int status = whole(option, text, lo, hi, &value);
+    if (!status) {
+        *out = (uint32_t)value;
+        *has = 1;
+    }
+    return status;
+}
+
+/* `count` whole numbers with `separator` between them. */
+static int several(const char *option, const char *text, char separator, uint32_t count, uint32_t lo, const char *form, uint32_t *out)
+{
+    const char *at = text;
+    for (uint32_t i = 0; i < count; i++) {
+        char *end;
+        errno = 0;
+        unsigned long long value = *at >= '0' && *at <= '9' ? strtoull(at, &end, 10) : UINT64_MAX;
+        if (value == UINT64_MAX || errno || value < lo || value > 65536 || *end != (i + 1 < count ? separator : '\0'))
+            return usage_error("%s expects %s in pixels, each from %u to 65536, not '%s'", option, form, lo, text);
+        out[i] = (uint32_t)value;
+        at = end + 1;
+    }
+    return 0;
+}
+
+/* One of the words; those from `absent` on are known but not in this build. */
+static int word(const char *option, const char *text, const char *const *words, uint32_t count, uint32_t absent, uint32_t *out)
+{
+    for (uint32_t i = 0; i < count; i++) {
+        if (strcmp(text, words[i]))
+            continue;
+        if (i >= absent)
+            return usage_error("%s %s is not available in this build", option, text);
+        *out = i;
+        return 0;
+    }
+    const char *near = mcr_nearest_word(text, words, count);
+    return usage_error("%s does not know '%s'%s%s%s", option, text, near ? ", did you mean '" : "", near ? near : "", near ? "'?" : "");
+}
+
+static int take_isa(struct mcr_options *options, const char *text)
+{
+    int32_t isa = mcr_cpu_isa_parse(text);
+    if (isa < 0)
+        return usage_error("--isa expects baseline, avx2 or avx512, not '%s'", text);
+    if ((uint32_t)isa > options->isa)
+        return usage_error("--isa %s: this processor or build has %s at most", text, mcr_cpu_isa_name(options->isa));
+    options->isa = (uint32_t)isa;
+    return 0;
+}
+
+static int take_set(struct mcr_options *options, const char *text)
+{
+    const char *equals = strchr(text, '=');
+    if (!equals || equals == text || !equals[1])
+        return usage_error("--set expects NAME=VALUE, not '%s'", text);
+    if (options->definition_count == MCR_DEFINITIONS_MAX)
+        return usage_error("--set may be given %u times at most", MCR_DEFINITIONS_MAX);
+    char *copy = strdup(text);
+    if (!copy)
+        return usage_error("out of memory");
+    copy[equals - text] = '\0';
+    for (uint32_t i = 0; i < options->definition_count; i++)
+        if (!strcmp(options->definition[i].name, copy)) {
+            free(copy);
+            return usage_error("--set %.*s is given twice", (int)(equals - text), text);
+        }
+    options->definition_text[options->definition_count] = copy;
+    options->definition[options->definition_count++] = (struct mcr_definition){.name = copy, .text = copy + (equals - text) + 1};
+    return 0;
+}
+
+static int take_exposure(struct mcr_options *options, const char *text)
+{
+    char *end;
+    options->exposure = strtod(text, &end);
+    if (end == text || *end || !(options->exposure >= -64 && options->exposure <= 64))
+        return usage_error("--exposure expects a number of stops from -64 to 64, not '%s'", text);
+    return 0;
+}
+
+static int take(struct mcr_options *options, const struct option *option, const char *text)
+{
+    static const char *const precisions[] = {"double", "single"}, *const accels[] = {"auto", "list", "bvh", "embree"};
+    struct mcr_overrides *o = &options->overrides;
+    uint32_t chosen;
+    switch (option->id) {
+    case OUTPUT:
+        if (options->output_count == MCR_OUTPUTS_MAX)
+            return usage_error("-o may be given %u times at most", MCR_OUTPUTS_MAX);
+        for (uint32_t i = 0; i < options->output_count; i++)
+            if (!strcmp(options->output[i], text))
+                return usage_error("-o %s is given twice", text);
+        options->output[options->output_count++] = text;
+        return 0;
+    case SPP:
+        return whole32("--spp", text, 1, INT32_MAX, &o->spp, &o->has_spp);
+    case DEPTH:
+        return whole32("--depth", text, 0, INT32_MAX - 1, &o->depth, &o->has_depth);
+    case SEED:
+        o->has_seed = 1;
+        return whole("--seed", text, 0, UINT64_C(1) << 53, &o->seed);
+    case THREADS:
+        return whole32("--threads", text, 0, 1024, &o->threads, &o->has_threads);
+    case SAMPLER:
+        o->sampler = text;
+        return 0;
+    case SIZE: {
+        uint32_t size[2];
+        int status = several("--size", text, 'x', 2, 1, "WIDTHxHEIGHT", size);
+        o->has_size = !status;
+        o->width = status ? 0 : size[0];
+        o->height = status ? 0 : size[1];
+        return status;
+    }
+    case CROP:
+        o->has_crop = 1;
+        return several("--crop", text, ',', 4, 0, "X0,Y0,X1,Y1", o->crop);
+    case PRECISION:
+        return word("--precision", text, precisions, 2, 1, &chosen);
+    case ACCEL:
+        o->has_accel = 1;
+        return word("--accel", text, accels, 4, 3, &o->accel);
+    case ISA:
+        return take_isa(options, text);
+    case BATCH:
+        return whole32("--batch", text, 1, 1u << 20, &o->batch, &o->has_batch);
+    case SET:
+        return take_set(options, text);
+    case PLUGIN:
+        if (options->plugin_count == MCR_PLUGINS_MAX)
+            return usage_error("--plugin may be given %u times at most", MCR_PLUGINS_MAX);
+        options->plugin[options->plugin_count++] = text;
+        return 0;
+    case REPORT:
+        options->report = text;
+        return 0;
+    case BITS:
+        if (strcmp(text, "8") && strcmp(text, "16"))
+            return usage_error("--bits expects 8 or 16, not '%s'", text);
+        options->bits = text[0] == '8' ? 8 : 16;
+        return 0;
+    case EXPOSURE:
+        return take_exposure(options, text);
+    case PROFILE:
+        options->profile = 1;
+        return 0;
+    case QUIET:
+        options->quiet = 1;
+        return 0;
+    case WERROR:
+        options->werror = 1;
+        return 0;
+    case HELP:
+        options->help = 1;
+        return 0;
+    default:
+        options->version = 1;
+        return 0;
+    }
+}
+
+/* The option that `argument` names, as --name, --name=value or an abbreviation of ours (-h). *value is what follows '='. */
+static const struct option *find(const char *argument, const char **value)
+{
+    const char *equals = argument[1] == '-' ? strchr(argument, '=') : NULL;
+    size_t length = equals ? (size_t)(equals - argument) : strlen(argument);
+    *value = equals ? equals + 1 : NULL;
+    if (!strcmp(argument, "-h"))
+        argument = "--help", length = 6;
+    for (size_t i = 0; i < OPTIONS; i++)
+        if (strlen(table[i].name) == length && !strncmp(table[i].name, argument, length))
+            return &table[i];
+    return NULL;
+}
+
+static int unknown(const char *argument)
+{
+    const char *names[OPTIONS];
+    char name[64];
+    snprintf(name, sizeof name, "%.*s", (int)strcspn(argument, "="), argument);
+    for (size_t i = 0; i < OPTIONS; i++)
+        names[i] = table[i].name;
+    const char *near = mcr_nearest_word(name, names, OPTIONS);
+    return usage_error("unknown option '%s'%s%s%s", name, near ? ", did you mean '" : "", near ? near : "", near ? "'?" : " (see mcrender --help)");
+}
+
+int mcr_options_parse(struct mcr_options *options, const char *command, int argc, char **argv)
+{
+    int where = !strcmp(command, "check") ? CHECK : !strcmp(command, "plugins") ? PLUGINS : RENDER, operands_only = 0;
+    memset(options, 0, sizeof *options);
+    options->isa = mcr_cpu_isa();
+    if (options->isa >= MCR_ISA_COUNT)
+        options->isa = MCR_ISA_COUNT - 1;
+    for (int i = 1; i < argc; i++) {
+        const char *value;
+        if (operands_only || argv[i][0] != '-' || !argv[i][1]) {
+            if (options->scene)
+                return usage_error("one operand expected: '%s' follows '%s'", argv[i], options->scene);
+            options->scene = argv[i];
+            continue;
+        }
+        if (!strcmp(argv[i], "--")) {
+            operands_only = 1;
+            continue;
+        }
+        const struct option *option = find(argv[i], &value);
+        if (!option)
+            return unknown(argv[i]);
+        if (!(option->where & where))
+            return usage_error("%s does not go with 'mcrender %s'", option->name, command);
+        if (option->argument && !value && ++i == argc)
+            return usage_error("%s expects %s", option->name, option->argument);
+        if (!option->argument && value)
+            return usage_error("%s takes no value", option->name);
+        int status = take(options, option, option->argument ? value ? value : argv[i] : NULL);
+        if (status)
+            return status;
+    }
+    return 0;
+}
+
+void mcr_options_fini(struct mcr_options *options)
+{
+    for (uint32_t i = 0; i < options->definition_count; i++)
+        free(options->definition_text[i]);
+    options->definition_count = 0;
+}

@@ -1,0 +1,35 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* What a render tells: text for people on stderr, JSON for programs. */
+#ifndef MCR_CLI_REPORT_H
+#define MCR_CLI_REPORT_H
+
+#include "cli/load.h"
+#include "core/core.h"
+#include "film/film.h"
+
+struct mcr_report_output {
+    const char *path;
+    struct mcr_write_result result;
+    int failed;
+};
+
+struct mcr_report_data {
+    const struct mcr_options *options;
+    const struct mcr_loaded_scene *loaded;
+    const struct mcr_accel *accel;
+    const struct mcr_render_stats *stats;
+    const struct mcr_film *film;
+    struct mcr_film_figures figures;
+    struct mcr_coverage coverage;
+    double accel_seconds, write_seconds;
+    uint32_t output_count;
+    struct mcr_report_output output[MCR_OUTPUTS_MAX];
+};
+
+void mcr_report_text(FILE *to, const struct mcr_report_data *data);
+/* Returns 0, or -1 if it could not be written: errno tells why. */
+int mcr_report_json(const char *path, const struct mcr_report_data *data);
+
+const char *mcr_accel_name(uint32_t kind);
+
+#endif

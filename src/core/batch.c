@@ -1,0 +1,100 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* The memory of a batch: one block, cut into 64-byte aligned arrays. */
+#include "core/batch.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/host.h"
+
+/* Cuts arrays from memory; with memory NULL it only counts. */
+struct cutter {
+    char *memory;
+    size_t used;
+};
+
+static void *cut(struct cutter *c, size_t count, size_t size)
+{
+    void *at = c->memory ? c->memory + c->used : NULL;
+    c->used += (count * size + 63) / 64 * 64;
+    return at;
+}
+
+static void cut_paths(struct cutter *c, struct mcr_paths *paths, uint32_t lanes)
+{
+    paths->r = cut(c, lanes, sizeof(double));
+    paths->g = cut(c, lanes, sizeof(double));
+    paths->b = cut(c, lanes, sizeof(double));
+    paths->pixel_key = cut(c, lanes, sizeof(uint64_t));
+    paths->path_key = cut(c, lanes, sizeof(uint64_t));
+    paths->index = cut(c, lanes, sizeof(uint32_t));
+    paths->planned = cut(c, lanes, sizeof(uint32_t));
+    paths->bounce = cut(c, lanes, sizeof(uint32_t));
+    paths->slot = cut(c, lanes, sizeof(uint32_t));
+}
+
+static void cut_all(struct cutter *c, struct mcr_batch *b)
+{
+    const struct mcr_core *core = b->core;
+    const uint32_t groups = core->group_count, rays = core->capacity;
+    struct mcr_surface_points *at = &b->at;
+    double **of_rays[] = {&b->rox, &b->roy, &b->roz, &b->rdx, &b->rdy, &b->rdz, &b->t};
+    double **of_points[] = {&at->px, &at->py, &at->pz, &at->nx,   &at->ny,    &at->nz, &at->gx, &at->gy, &at->gz, &at->ox,
+                            &at->oy, &at->oz, &at->side, &at->reach, &b->wx,  &b->wy,  &b->wz,  &b->density,
+                            &b->fr,  &b->fg,  &b->fb,  &b->alive};
+    for (size_t i = 0; i < sizeof of_rays / sizeof *of_rays; i++)
+        *of_rays[i] = cut(c, rays, sizeof(double));
+    b->hit = cut(c, rays, sizeof *b->hit);
+    b->source = cut(c, rays, sizeof *b->source);
+    b->miss = cut(c, rays, sizeof *b->miss);
+    b->zone = cut(c, rays, sizeof *b->zone);
+    cut_paths(c, &b->state, b->lanes);
+    cut_paths(c, &b->sorted, b->lanes);
+    for (size_t i = 0; i < sizeof of_points / sizeof *of_points; i++)
+        *of_points[i] = cut(c, b->lanes, sizeof(double));
+    at->material = cut(c, b->lanes, sizeof *at->material);
+    at->primitive = cut(c, b->lanes, sizeof *at->primitive);
+    b->order = cut(c, b->lanes, sizeof *b->order);
+    b->range = cut(c, 2 * (size_t)groups, sizeof *b->range);
+    b->zone_count = cut(c, 2 * (size_t)groups + 1, sizeof *b->zone_count);
+    b->zone_begin = cut(c, 2 * (size_t)groups + 1, sizeof *b->zone_begin);
+    for (uint32_t k = 0; k < MCR_NUMBERS_MAX; k++)
+        b->number[k] = cut(c, b->lanes, sizeof(double));
+    b->lane_input = cut(c, (size_t)core->channels * b->lanes, sizeof(double));
+    b->channel = cut(c, core->channels, sizeof *b->channel);
+    b->stride = cut(c, core->channels, sizeof *b->stride);
+    b->slot_r = cut(c, (size_t)MCR_JOBS * MCR_JOB_SLOTS, sizeof(double));
+    b->slot_g = cut(c, (size_t)MCR_JOBS * MCR_JOB_SLOTS, sizeof(double));
+    b->slot_b = cut(c, (size_t)MCR_JOBS * MCR_JOB_SLOTS, sizeof(double));
+    b->job = cut(c, MCR_JOBS, sizeof *b->job);
+    b->camera_x = cut(c, rays, sizeof(double));
+    b->camera_y = cut(c, rays, sizeof(double));
+    b->camera_pixel = cut(c, rays, sizeof *b->camera_pixel);
+    b->camera_replicate = cut(c, rays, sizeof *b->camera_replicate);
+    b->scratch = cut(c, core->scratch_bytes, 1);
+}
+
+int mcr_batch_init(struct mcr_batch *batch, struct mcr_core *core)
+{
+    struct cutter c = {NULL, 0};
+    memset(batch, 0, sizeof *batch);
+    batch->core = core;
+    /* Points take at most the rays and a pad for each zone; camera paths fill up what the rays leave, with a pad for each job. */
+    batch->lanes = 2 * core->capacity + MCR_LANE_PAD * (2 * core->group_count + MCR_JOBS + 1);
+    cut_all(&c, batch);
+    batch->memory = aligned_alloc(64, c.used);
+    if (!batch->memory)
+        return -1;
+    memset(batch->memory, 0, c.used);
+    c = (struct cutter){batch->memory, 0};
+    cut_all(&c, batch);
+    batch->context.core = batch;
+    batch->context.has_lights = core->scene->has_lights != 0;
+    return 0;
+}
+
+void mcr_batch_fini(struct mcr_batch *batch)
+{
+    free(batch->memory);
+    batch->memory = NULL;
+}

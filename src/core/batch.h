@@ -1,0 +1,187 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * A thread's batch of paths, and the table of stages that work on it. Private to src/core.
+ *
+ * Two orders of lanes alternate. *Rays* 0 .. rays-1 are what is traced; ray j belongs to the path state in lane source[j]. After the hits are known,
+ * `sort` lists the rays that go on by *group* (a material plugin, or one material of it), each group beginning at a multiple of MCR_LANE_PAD, and
+ * `surface` gathers them into points in that order. Everything up to `compact`, which makes rays of the living points, works on points.
+ * The states of new camera paths are appended behind those of the points; arrays have room for both.
+ */
+#ifndef MCR_CORE_BATCH_H
+#define MCR_CORE_BATCH_H
+
+#include "accel/accel.h"
+#include "base/lanes.h"
+#include "core/core.h"
+#include "core/emitters.h"
+
+#define MCR_NUMBERS_MAX 16u /* dimensions of a sampler's nodes at one bounce */
+#define MCR_JOB_SLOTS 4096u /* samples in flight for one job: cells of up to MCR_CELL_SAMPLES */
+#define MCR_JOBS 8u /* jobs that a batch may have in flight: more than one, so that the last paths of a job do not keep lanes empty */
+#define MCR_DIMENSION_LENS 2u
+#define MCR_DIMENSION_SAMPLER 8u
+#define MCR_DIMENSION_ROULETTE 32u /* of bounce 0: 8 + 24 */
+
+/* A path's state, apart from where it is. */
+struct mcr_paths {
+    double *r, *g, *b;      /* throughput */
+    uint64_t *pixel_key, *path_key;
+    uint32_t *index, *planned; /* the sample's number in its replicate, and how many are planned */
+    uint32_t *bounce;       /* scattering events so far */
+    uint32_t *slot;         /* where its radiance goes, in the ring of slots */
+};
+
+/* Surface properties by primitive, for gathering. A sphere has radius > 0 and its centre in c; all others are flat (n) but for ellipsoids. */
+struct mcr_surfaces {
+    uint32_t count;
+    double *nx, *ny, *nz, *offset; /* offset: n.c */
+    double *cx, *cy, *cz, *radius; /* used where something is round */
+    int round;
+    double *reach;          /* max(|c|, R) of the shape: the magnitudes that its hits were computed with */
+    uint32_t *material;
+    uint32_t *zone;         /* of primitive p in zone[p + 1], and of a miss in zone[0]: see sort.c */
+    uint32_t *quadric;      /* an ellipsoid's index among the accelerator's shapes, or UINT32_MAX; NULL without ellipsoids */
+    int smooth;             /* triangles have normals of their own */
+};
+
+/* What one call of a material plugin is for: a stateless plugin with all its materials, or one material. */
+struct mcr_group {
+    const struct mcr_material_plugin *plugin;
+    const void *instance;
+    const struct mcr_node *node;    /* the first material's */
+    uint32_t material_count;        /* how many materials are in it */
+    uint32_t first;                 /* one of them */
+    int scatters, emits;
+    uint32_t channels;              /* 3 * parameters */
+    double *constant;               /* channels * MCR_LANE_PAD: each value MCR_LANE_PAD times; of the first material */
+    double **table;                 /* channels arrays of scene->material_count values, for groups of several materials */
+    uint8_t *varies;                /* channels: whether the group's materials differ in it */
+};
+
+/* What all threads share: immutable during a pass. */
+struct mcr_core {
+    const struct mcr_scene *scene;
+    const struct mcr_accel *accel;
+    const struct mcr_accel_functions *trace;
+    const struct mcr_stages *stages;
+    struct mcr_emitters *emitters;
+    const struct mcr_emitter_functions *lights;
+    struct mcr_surfaces surfaces;
+    uint32_t group_count;
+    struct mcr_group *group;
+    uint32_t *group_of_material;
+    uint32_t capacity;              /* rays in a batch */
+    uint32_t channels;              /* most of any group */
+    uint32_t dimensions;            /* of the sampler's techniques, one bounce */
+    uint32_t continuing;            /* the sampler's technique that continues paths */
+    int background;                 /* it is not black */
+    uint64_t scratch_bytes;         /* for all nested operations of one thread */
+    int needs_samples;              /* a number source other than `independent` is there */
+    struct mcr_host host;
+    const struct mcr_render_options *options;
+};
+
+/* Points of one batch, sorted. */
+struct mcr_surface_points {
+    double *px, *py, *pz, *nx, *ny, *nz, *gx, *gy, *gz, *ox, *oy, *oz, *side;
+    double *reach;                  /* magnitude for the offset of rays that leave: max(|p|, |o|, reach of the shape) */
+    uint32_t *material;
+    int64_t *primitive;
+};
+
+/* A stretch of points of one group. */
+struct mcr_range {
+    uint32_t group, begin, end;     /* points begin .. end-1; begin is a multiple of MCR_LANE_PAD */
+    int ends;                       /* these paths emit and end */
+};
+
+/* A block of cells of the running pass that is being rendered: a place in the ring of slots. */
+struct mcr_job {
+    uint64_t first_cell;
+    uint32_t cells, paths, begun;
+    uint32_t pending;               /* paths not finished, or not begun */
+    int busy;
+};
+
+struct mcr_batch {
+    struct mcr_core *core;
+    uint32_t lanes;                 /* room in the arrays of states and points */
+    uint32_t rays;                  /* lanes of the ray arrays that are in use */
+    double *rox, *roy, *roz, *rdx, *rdy, *rdz, *t;
+    int64_t *hit;
+    uint32_t *source;               /* ray -> lane of `state` */
+    struct mcr_paths state, sorted; /* `sorted` is gathered from `state` with the points; they swap roles each round */
+    uint32_t points;                /* lanes of the point arrays, padding between groups included */
+    uint32_t states;                /* lanes of `state` in use: camera paths are appended from here */
+    struct mcr_surface_points at;
+    uint32_t *order;                /* point -> ray */
+    struct mcr_range *range;
+    uint32_t range_count;
+    uint32_t *miss;                 /* rays that hit nothing */
+    uint32_t miss_count;
+    uint32_t *zone_count, *zone_begin; /* 2 * groups + 1 each: those that scatter, those that end, misses */
+    uint32_t *zone;                 /* ray -> zone */
+    double *number[MCR_NUMBERS_MAX];
+    double *wx, *wy, *wz, *density; /* drawn directions */
+    double *fr, *fg, *fb;           /* f * cos */
+    double *alive;                  /* 1 or 0 */
+    double *lane_input;             /* channels * capacity: inputs that vary from lane to lane */
+    const double **channel;         /* the pointers handed to plugins */
+    uint32_t *stride;
+    double *slot_r, *slot_g, *slot_b;
+    struct mcr_job *job;
+    char *scratch;                  /* scratch_bytes */
+    uint64_t scratch_used;
+    struct mcr_context context;
+    const struct mcr_range *running; /* the range whose points a sampler works on, for the host's material services */
+    /* for new camera paths */
+    double *camera_x, *camera_y;
+    uint64_t *camera_pixel;
+    uint32_t *camera_replicate;
+    /* counts, summed at the end */
+    uint64_t not_finite, not_finite_cell; /* of the pass */
+    uint32_t not_finite_sample;
+    uint64_t camera_rays, bounce_rays, shadow_rays, scatterings;
+    double stage_seconds[MCR_STAGE_COUNT];
+    void *memory;
+};
+
+/* Camera rays for lanes that were given their pixels: x, y in pixels of the full picture; u: film and lens numbers (NULL without a lens). */
+struct mcr_camera_lanes {
+    uint32_t n;
+    const double *x, *y;
+    const double *const *film;      /* 2 arrays */
+    const double *const *lens;      /* 2 arrays, or NULL */
+    double *ox, *oy, *oz, *dx, *dy, *dz;
+};
+
+/* The stage functions, compiled once per instruction set. */
+struct mcr_stages {
+    void (*camera)(const struct mcr_scene *scene, const struct mcr_camera_lanes *lanes);
+    void (*path_keys)(uint64_t seed, uint32_t n, const uint64_t *pixel, const uint32_t *replicate, const uint32_t *index, uint64_t *pixel_key,
+                      uint64_t *path_key);
+    /* Groups rays by what they hit: fills order, range, miss. */
+    void (*sort)(struct mcr_batch *batch);
+    /* Points and path states in sorted order. */
+    void (*surface)(struct mcr_batch *batch);
+    /* Adds radiance times throughput to the slots of points begin .. end-1. */
+    void (*emit)(struct mcr_batch *batch, uint32_t begin, uint32_t end);
+    /* Adds the background to the slots of the rays that hit nothing. */
+    void (*background)(struct mcr_batch *batch);
+    /* Throughput times f cos / density, and roulette with `u` (NULL: none); fills alive. */
+    void (*scatter)(struct mcr_batch *batch, uint32_t begin, uint32_t end, const double *u);
+    /* Makes rays of the living points and appends their lanes to `source`. */
+    void (*compact)(struct mcr_batch *batch);
+};
+
+extern const struct mcr_stages mcr_stages_isa0, mcr_stages_isa1, mcr_stages_isa2;
+
+/* batch.c: memory. Returns 0, or -1 when it is short. */
+int mcr_batch_init(struct mcr_batch *batch, struct mcr_core *core);
+void mcr_batch_fini(struct mcr_batch *batch);
+
+/* groups.c: inputs of points begin .. end-1 of a group, for a plugin's operation. */
+struct mcr_inputs mcr_group_inputs(struct mcr_batch *batch, const struct mcr_group *group, uint32_t begin, uint32_t end);
+struct mcr_points mcr_batch_points(const struct mcr_batch *batch, uint32_t begin, uint32_t end);
+
+#endif

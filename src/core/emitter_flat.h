@@ -1,0 +1,226 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * Parallelograms, triangles and disks as emitters: crossing, drawing by area and by solid angle, densities. One lane at a time, without branches
+ * and calls, so that a loop over lanes is vectorised. Private to the emitters' stage file.
+ *
+ * Solid angle: A. Van Oosterom, J. Strackee, "The solid angle of a plane triangle", IEEE Trans. Biomed. Eng. 30 (1983): for the triangle
+ * A, B, C seen from the origin, tan(W/2) = T / D with the triple product T = A.(B x C) and D = |A||B||C| + (A.B)|C| + (B.C)|A| + (C.A)|B|.
+ * T is taken as N.(p - c) with N = e0 x e1 known beforehand; it is the same for both triangles of a parallelogram, whose half angles are added as the
+ * arguments of the complex numbers D + iT: one arc tangent gives the whole.
+ *
+ * Drawing: the polygon is swept by a fan of arcs from the vertex B; the arc that ends at the point P of the far edge cuts off the area w.
+ * With P at the angle t along the great circle from the unit vector a toward m (m = E - (a.E) a for the edge's vector E), the formula above gives
+ *     tan(w/2) = T' tan(t/2) / ((1 + a.b)|m| + (b.m) tan(t/2)),   T' = a.(b x m),
+ * which is solved for tan(t/2) without any angle: J. Arvo, "Stratified sampling of spherical triangles", SIGGRAPH 1995, in half-angle form (C. Peters,
+ * "BRDF importance sampling for polygonal lights", ACM TOG 40(4), 2021, section 4, does alike). No term cancels for small triangles, where Arvo's do.
+ * Along the arc the cosine to B is uniform; it is taken from the chord |b - c'|^2 = 2 (1 - b.c').
+ */
+#ifndef MCR_CORE_EMITTER_FLAT_H
+#define MCR_CORE_EMITTER_FLAT_H
+
+#include "base/elementary.h"
+#include "core/emitters.h"
+
+/*
+ * Solid angle is uncertain by about 1e-14 / (cos sin): below these limits points are drawn by area instead, the same in draw and density. A light of 1e-8 sr is
+ * so small that area and solid angle are alike to 1e-4. A point lower over the plane than 2^-14 of the farthest vertex sees it at a grazing angle, or has it
+ * at its nose: the error measured there is below 1e-10 (tests/core/emitters_measure.c).
+ */
+#define STEADY_HALF_ANGLE 5e-9
+#define STEADY_HEIGHT_SQUARED 0x1p-28
+
+/* What was drawn in a lane: unit direction, density, distance. All 0: nothing. */
+struct drawn {
+    double x, y, z, density, distance;
+};
+
+#define NOT_STEADY (-1.0) /* as a density: by area instead */
+
+struct flat {
+    double cx, cy, cz, ux, uy, uz, vx, vy, vz, nx, ny, nz; /* corner, e0, e1, N */
+    double above, below, factor, nn;
+};
+
+/* Constant j stands at k[j * step]. */
+MCR_INLINE struct flat flat_load(const double *k, size_t step)
+{
+    struct flat f = {
+        k[0 * step], k[1 * step], k[2 * step], k[3 * step], k[4 * step],  k[5 * step],
+        k[6 * step], k[7 * step], k[8 * step], k[9 * step], k[10 * step], k[11 * step],
+        k[MCR_K_ABOVE * step], k[MCR_K_BELOW * step], k[MCR_K_FACTOR * step], k[MCR_K_NN * step],
+    };
+    return f;
+}
+
+MCR_INLINE double flat_height(const struct flat *f, double px, double py, double pz)
+{
+    return f->nx * (px - f->cx) + f->ny * (py - f->cy) + f->nz * (pz - f->cz);
+}
+
+/*
+ * 1 where the ray crosses. Coordinates (a, b) along the edges are compared after multiplication by the positive denominator of the ray's length.
+ * dual: the two dual vectors.
+ */
+MCR_INLINE int flat_crossed(uint32_t kind, const struct flat *f, const double *dual, double px, double py, double pz, double dx, double dy, double dz)
+{
+    double fx = px - f->cx, fy = py - f->cy, fz = pz - f->cz;
+    double height = f->nx * fx + f->ny * fy + f->nz * fz, toward = f->nx * dx + f->ny * dy + f->nz * dz;
+    double over = fabs(height), sink = height < 0 ? toward : -toward;
+    double a = (dual[0] * fx + dual[1] * fy + dual[2] * fz) * sink + over * (dual[0] * dx + dual[1] * dy + dual[2] * dz);
+    double b = (dual[3] * fx + dual[4] * fy + dual[5] * fz) * sink + over * (dual[3] * dx + dual[4] * dy + dual[5] * dz);
+    int seen = (height > f->above) | (height < f->below), inside;
+    if (kind == MCR_EMITTER_PARALLELOGRAM)
+        inside = (a >= 0) & (b >= 0) & (a <= sink) & (b <= sink);
+    else if (kind == MCR_EMITTER_TRIANGLE)
+        inside = (a >= 0) & (b >= 0) & (a + b <= sink);
+    else
+        inside = a * a + b * b <= sink * sink;
+    return seen & inside & (sink > 0);
+}
+
+/* The density by area of a direction that crosses: t^2 / (area cos). */
+MCR_INLINE double flat_area_density(const struct flat *f, double px, double py, double pz, double dx, double dy, double dz)
+{
+    double height = flat_height(f, px, py, pz), sink = fabs(f->nx * dx + f->ny * dy + f->nz * dz);
+    return f->factor * (height * height) / (sink * sink * sink);
+}
+
+/* The distance to the plane. */
+MCR_INLINE double flat_distance(const struct flat *f, double px, double py, double pz, double dx, double dy, double dz)
+{
+    return fabs(flat_height(f, px, py, pz) / (f->nx * dx + f->ny * dy + f->nz * dz));
+}
+
+/* A point (s, t) along e0, e1, uniform in area. */
+MCR_INLINE struct drawn flat_draw_area(uint32_t kind, const struct flat *f, double px, double py, double pz, double u, double v)
+{
+    double ax = f->cx - px, ay = f->cy - py, az = f->cz - pz, s, t;
+    double height = -(f->nx * ax + f->ny * ay + f->nz * az), over = fabs(height);
+    if (kind == MCR_EMITTER_DISK) {
+        mcr_disk_from_square(u, v, &s, &t);
+    } else if (kind == MCR_EMITTER_TRIANGLE) {
+        double root = sqrt(u);
+        t = root * v;
+        s = root - t;
+    } else {
+        s = u;
+        t = v;
+    }
+    double qx = ax + s * f->ux + t * f->vx, qy = ay + s * f->uy + t * f->vy, qz = az + s * f->uz + t * f->vz;
+    double square = qx * qx + qy * qy + qz * qz, distance = sqrt(square);
+    double inverse = 1 / (distance * over), scale = inverse * over; /* one division for two */
+    double density = f->factor * (square * square) * inverse;
+    int good = ((height > f->above) | (height < f->below)) & (density < MCR_INFINITY);
+    struct drawn d = {good ? qx * scale : 0, good ? qy * scale : 0, good ? qz * scale : 0, good ? density : 0, good ? distance : 0};
+    return d;
+}
+
+/* The vertices seen from the point: lengths and dot products. Vertex 2 of a triangle is c + e1; of a parallelogram, c + e0 + e1 and vertex 3 is c + e1. */
+struct fan {
+    double x[4], y[4], z[4], length[4];
+    double d01, d02, d12, d03, d23;
+    double triple;        /* |T| */
+    double first, second; /* D of the triangles 0 1 2 and 0 2 3 */
+    double re, im;        /* argument: half the solid angle */
+    double half;
+    int seen, steady;
+};
+
+#define DOT(f, i, j) ((f)->x[i] * (f)->x[j] + (f)->y[i] * (f)->y[j] + (f)->z[i] * (f)->z[j])
+
+MCR_INLINE void fan_triangle(const struct flat *k, struct fan *f)
+{
+    f->x[2] = f->x[0] + k->vx, f->y[2] = f->y[0] + k->vy, f->z[2] = f->z[0] + k->vz;
+    double s0 = DOT(f, 0, 0), s1 = DOT(f, 1, 1), s2 = DOT(f, 2, 2), far = s0 > s1 ? s0 : s1;
+    far = far > s2 ? far : s2;
+    f->length[0] = sqrt(s0), f->length[1] = sqrt(s1), f->length[2] = sqrt(s2);
+    f->d01 = DOT(f, 0, 1), f->d02 = DOT(f, 0, 2), f->d12 = DOT(f, 1, 2);
+    f->re = f->length[0] * f->length[1] * f->length[2] + f->d01 * f->length[2] + f->d12 * f->length[0] + f->d02 * f->length[1];
+    f->im = f->triple;
+    f->steady = f->triple * f->triple > STEADY_HEIGHT_SQUARED * (k->nn * far);
+}
+
+MCR_INLINE void fan_parallelogram(const struct flat *k, struct fan *f)
+{
+    f->x[2] = f->x[1] + k->vx, f->y[2] = f->y[1] + k->vy, f->z[2] = f->z[1] + k->vz;
+    f->x[3] = f->x[0] + k->vx, f->y[3] = f->y[0] + k->vy, f->z[3] = f->z[0] + k->vz;
+    double s0 = DOT(f, 0, 0), s1 = DOT(f, 1, 1), s2 = DOT(f, 2, 2), s3 = DOT(f, 3, 3);
+    double low = s0 > s1 ? s0 : s1, high = s2 > s3 ? s2 : s3, far = low > high ? low : high;
+    f->length[0] = sqrt(s0), f->length[1] = sqrt(s1), f->length[2] = sqrt(s2), f->length[3] = sqrt(s3);
+    f->d01 = DOT(f, 0, 1), f->d02 = DOT(f, 0, 2), f->d12 = DOT(f, 1, 2), f->d03 = DOT(f, 0, 3), f->d23 = DOT(f, 2, 3);
+    double across = f->length[0] * f->length[2] + f->d02; /* of both triangles */
+    f->first = f->length[1] * across + f->d01 * f->length[2] + f->d12 * f->length[0];
+    f->second = f->length[3] * across + f->d03 * f->length[2] + f->d23 * f->length[0];
+    f->re = f->first * f->second - f->triple * f->triple;
+    f->im = f->triple * (f->first + f->second);
+    f->steady = f->triple * f->triple > STEADY_HEIGHT_SQUARED * (k->nn * far);
+}
+
+MCR_INLINE struct fan fan_measure(uint32_t kind, const struct flat *k, double px, double py, double pz)
+{
+    struct fan f;
+    double height;
+    f.x[0] = k->cx - px, f.y[0] = k->cy - py, f.z[0] = k->cz - pz;
+    f.x[1] = f.x[0] + k->ux, f.y[1] = f.y[0] + k->uy, f.z[1] = f.z[0] + k->uz;
+    height = -(k->nx * f.x[0] + k->ny * f.y[0] + k->nz * f.z[0]);
+    f.triple = fabs(height);
+    f.seen = (height > k->above) | (height < k->below);
+    if (kind == MCR_EMITTER_TRIANGLE)
+        fan_triangle(k, &f);
+    else
+        fan_parallelogram(k, &f);
+    f.half = mcr_atan2(f.im, f.re);
+    f.steady &= f.half > STEADY_HALF_ANGLE;
+    return f;
+}
+
+/* The density by solid angle of a direction that crosses; by area where that is not steady. */
+MCR_INLINE double flat_solid_density(uint32_t kind, const struct flat *k, double px, double py, double pz, double dx, double dy, double dz)
+{
+    struct fan f = fan_measure(kind, k, px, py, pz);
+    double by_area = flat_area_density(k, px, py, pz, dx, dy, dz), by_angle = 0.5 / f.half;
+    return f.steady ? by_angle : by_area;
+}
+
+/* NOT_STEADY as density where it is to be done by area. */
+MCR_INLINE struct drawn flat_draw_solid(uint32_t kind, const struct flat *k, double px, double py, double pz, double u, double v)
+{
+    struct fan f = fan_measure(kind, k, px, py, pz);
+    double target = u * f.half, sine = mcr_sin(target), cosine = mcr_cos(target);
+    double ax = f.x[1], ay = f.y[1], az = f.z[1], ex, ey, ez, length = f.length[1], dot = f.d01;
+    if (kind == MCR_EMITTER_TRIANGLE) {
+        ex = k->vx - k->ux, ey = k->vy - k->uy, ez = k->vz - k->uz;
+    } else {
+        /* Past the first triangle, whose half angle has the direction first + i triple: the rest goes into the second one, along -e0. */
+        double past = sine * f.first - cosine * f.triple, along = cosine * f.first + sine * f.triple;
+        int second = past > 0;
+        sine = second ? past : sine;
+        cosine = second ? along : cosine;
+        ax = second ? f.x[2] : ax, ay = second ? f.y[2] : ay, az = second ? f.z[2] : az;
+        ex = second ? -k->ux : k->vx, ey = second ? -k->uy : k->vy, ez = second ? -k->uz : k->vz;
+        length = second ? f.length[2] : length;
+        dot = second ? f.d02 : dot;
+    }
+    /* a = A / |A|, b = B / |B|, m = E - (a.E) a; tan(t/2) = x / (y |m|). */
+    double inverse = 1 / (length * f.length[0]), ia = inverse * f.length[0], ib = inverse * length;
+    ax *= ia, ay *= ia, az *= ia;
+    double bx = f.x[0] * ib, by = f.y[0] * ib, bz = f.z[0] * ib;
+    double along = ax * ex + ay * ey + az * ez;
+    double mx = ex - along * ax, my = ey - along * ay, mz = ez - along * az;
+    double x = (length * f.length[0] + dot) * sine;
+    double y = f.triple * cosine - length * (f.x[0] * mx + f.y[0] * my + f.z[0] * mz) * sine;
+    double yy = y * y, xx = x * x * (mx * mx + my * my + mz * mz), scale = 1 / (yy + xx);
+    double ca = (yy - xx) * scale, cm = 2 * (x * y) * scale;
+    /* From b along the arc to c': cos = 1 - v chord^2 / 2. */
+    double dx = ca * ax + cm * mx - bx, dy = ca * ay + cm * my - by, dz = ca * az + cm * mz - bz;
+    double chord = dx * dx + dy * dy + dz * dz, part = v * chord;
+    double out = sqrt(v * (4 - part) / (4 - chord)), keep = 1 - 0.5 * part + 0.5 * chord * out;
+    double wx = keep * bx + out * dx, wy = keep * by + out * dy, wz = keep * bz + out * dz;
+    double fix = 1.5 - 0.5 * (wx * wx + wy * wy + wz * wz); /* a Newton step toward unit length */
+    int good = f.seen & f.steady;
+    double density = f.seen ? (f.steady ? 0.5 / f.half : NOT_STEADY) : 0.0;
+    struct drawn d = {good ? wx * fix : 0, good ? wy * fix : 0, good ? wz * fix : 0, density, 0};
+    return d;
+}
+
+#endif

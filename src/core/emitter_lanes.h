@@ -1,0 +1,54 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * Working memory of the emitters' stage files, and what they share: the services work on blocks of lanes that stay in the first cache; lanes for which something
+ * expensive is to be done are listed, gathered, computed side by side and scattered.
+ */
+#ifndef MCR_CORE_EMITTER_LANES_H
+#define MCR_CORE_EMITTER_LANES_H
+
+#include "base/lanes.h"
+#include "core/emitters.h"
+
+/* Lanes of a block. */
+#define MCR_EMITTER_BLOCK 128u
+
+/* Lanes side by side: point; numbers u, v or direction; results. Arrays of the caller, or of a pack. */
+struct mcr_emitter_lanes {
+    uint32_t n;
+    const double *px, *py, *pz, *u, *v;
+    double *wx, *wy, *wz, *density, *distance;
+};
+
+typedef double mcr_emitter_row[MCR_EMITTER_BLOCK];
+
+/* Gathered lanes with the constants of an emitter each. */
+struct mcr_emitter_pack {
+    mcr_emitter_row px, py, pz, u, v, wx, wy, wz, density, distance;
+    mcr_emitter_row k[MCR_K_SIZE];
+    int32_t lane[MCR_EMITTER_BLOCK];
+};
+
+struct mcr_emitter_scratch {
+    mcr_emitter_row total;                /* sum of the probabilities of the emitters that are seen, then its inverse */
+    mcr_emitter_row share;                /* of the chosen emitter, before division by the total */
+    mcr_emitter_row wx, wy, wz, density, distance, flag;
+    int64_t chosen[MCR_EMITTER_BLOCK];    /* emitter, -1: none */
+    int32_t list[MCR_EMITTER_BLOCK];
+    struct mcr_emitter_pack pack, second; /* second: those of the pack that fall back to area */
+};
+
+/* emitter_kernels.c. Flags (1 or 0) the lanes whose rays (p; w) cross emitter e and that see it. */
+void MCR_ISA_NAME(mcr_emitter_cross)(const struct mcr_emitters *all, uint32_t e, const struct mcr_emitter_lanes *lanes, double *flag);
+/* Sets distance to 1 in the lanes that see emitter e, else to 0. */
+void MCR_ISA_NAME(mcr_emitter_seen)(const struct mcr_emitters *all, uint32_t e, const struct mcr_emitter_lanes *lanes);
+/*
+ * For lanes of one kind; `varying` tells whether constant j of lane i is k[j * MCR_EMITTER_BLOCK + i] or k[j].
+ * density: of directions that cross. `alone`: the density of the one point at `distance`.
+ */
+void MCR_ISA_NAME(mcr_emitter_density)(uint32_t kind, uint32_t by, int alone, const struct mcr_emitter_lanes *lanes, const double *k, int varying);
+/* distance: to what is seen in direction w. */
+void MCR_ISA_NAME(mcr_emitter_distance)(uint32_t kind, const struct mcr_emitter_lanes *lanes, const double *k, int varying);
+/* Draws w, density and distance (0 where it was drawn by solid angle); density NOT_STEADY: is to be drawn by area. */
+void MCR_ISA_NAME(mcr_emitter_draw)(uint32_t kind, uint32_t by, int alone, const struct mcr_emitter_lanes *lanes, const double *k, int varying);
+
+#endif

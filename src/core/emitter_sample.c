@@ -1,0 +1,487 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * The light services over blocks of lanes: choosing emitters, drawing, summing densities. Compiled once per instruction set.
+ *
+ * Every lane's results are the same in whatever block and order it is computed: a lane's sums run over the emitters in their order.
+ */
+#include "core/emitter_flat.h"
+#include "core/emitter_lanes.h"
+
+#define CROSS MCR_ISA_NAME(mcr_emitter_cross)
+#define SEEN MCR_ISA_NAME(mcr_emitter_seen)
+#define DENSITY MCR_ISA_NAME(mcr_emitter_density)
+#define DISTANCE MCR_ISA_NAME(mcr_emitter_distance)
+#define DRAW MCR_ISA_NAME(mcr_emitter_draw)
+
+/* Up to so many emitters the lanes of one emitter are drawn together, with its constants in registers; beyond, the lanes of one kind. */
+#define MOST_BY_EMITTER 8u
+
+#define MINIMUM(a, b) ((a) < (b) ? (a) : (b))
+
+/* ---- lists of lanes ------------------------------------------------------------------------------------------------ */
+
+static uint32_t list_flagged(uint32_t n, const double *restrict flag, int32_t *restrict list)
+{
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < n; i++) {
+        list[count] = (int32_t)i;
+        count += flag[i] != 0;
+    }
+    return count;
+}
+
+static void gather(uint32_t count, const int32_t *restrict list, const double *restrict from, double *restrict to)
+{
+    MCR_LANES
+    for (uint32_t j = 0; j < count; j++)
+        to[j] = from[list[j]];
+}
+
+static void scatter(uint32_t count, const int32_t *restrict list, const double *restrict from, double *restrict to)
+{
+    for (uint32_t j = 0; j < count; j++)
+        to[list[j]] = from[j];
+}
+
+static struct mcr_emitter_lanes pack_lanes(struct mcr_emitter_pack *pack, uint32_t n)
+{
+    struct mcr_emitter_lanes lanes = {n,        pack->px, pack->py, pack->pz,      pack->u,       pack->v,
+                                      pack->wx, pack->wy, pack->wz, pack->density, pack->distance};
+    return lanes;
+}
+
+static void gather_points(const struct mcr_emitter_lanes *from, uint32_t count, const int32_t *list, struct mcr_emitter_pack *to)
+{
+    gather(count, list, from->px, to->px);
+    gather(count, list, from->py, to->py);
+    gather(count, list, from->pz, to->pz);
+}
+
+static void gather_numbers(const struct mcr_emitter_lanes *from, uint32_t count, const int32_t *list, struct mcr_emitter_pack *to)
+{
+    gather(count, list, from->u, to->u);
+    gather(count, list, from->v, to->v);
+}
+
+static void gather_directions(const struct mcr_emitter_lanes *from, uint32_t count, const int32_t *list, struct mcr_emitter_pack *to)
+{
+    gather(count, list, from->wx, to->wx);
+    gather(count, list, from->wy, to->wy);
+    gather(count, list, from->wz, to->wz);
+}
+
+static void scatter_drawn(uint32_t count, const int32_t *list, const struct mcr_emitter_pack *from, const struct mcr_emitter_lanes *to)
+{
+    scatter(count, list, from->wx, to->wx);
+    scatter(count, list, from->wy, to->wy);
+    scatter(count, list, from->wz, to->wz);
+    scatter(count, list, from->density, to->density);
+    scatter(count, list, from->distance, to->distance);
+}
+
+/* Each lane gets the constants of its emitter. */
+static void gather_constants(const struct mcr_emitters *all, const int64_t *restrict chosen, uint32_t count, const int32_t *restrict list,
+                             struct mcr_emitter_pack *restrict to)
+{
+    for (uint32_t j = 0; j < count; j++) {
+        const double *k = all->k[chosen[list[j]]];
+        for (uint32_t c = 0; c < MCR_K_SIZE; c++)
+            to->k[c][j] = k[c];
+    }
+}
+
+/* The points of a block: lanes base .. base+n-1 of the caller's arrays. */
+static struct mcr_emitter_lanes block_points(const struct mcr_points *at, uint32_t base)
+{
+    struct mcr_emitter_lanes lanes = {.n = MINIMUM(at->n - base, MCR_EMITTER_BLOCK), .px = at->px + base, .py = at->py + base, .pz = at->pz + base};
+    return lanes;
+}
+
+/* ---- choosing an emitter ------------------------------------------------------------------------------------------- */
+
+/* Whether probabilities are shared among the emitters that are seen. With one emitter there is nothing to share. */
+static int shares(const struct mcr_emitters *all)
+{
+    return all->count > 1 && all->count <= MCR_EMITTERS_FEW;
+}
+
+/* total: the probabilities of the emitters that each lane sees. Uses `flag`. */
+static void sum_seen(const struct mcr_emitters *all, const struct mcr_emitter_lanes *points, struct mcr_emitter_scratch *s)
+{
+    struct mcr_emitter_lanes lanes = *points;
+    double *restrict total = s->total, *restrict seen = s->flag;
+    lanes.distance = s->flag;
+    for (uint32_t i = 0; i < lanes.n; i++)
+        total[i] = 0;
+    for (uint32_t e = 0; e < all->count; e++) {
+        double probability = all->emitter[e].probability;
+        SEEN(all, e, &lanes);
+        MCR_LANES
+        for (uint32_t i = 0; i < lanes.n; i++)
+            total[i] += probability * seen[i];
+    }
+}
+
+/* total becomes its inverse, 0 for 0. */
+static void invert_total(uint32_t n, double *restrict total)
+{
+    MCR_LANES
+    for (uint32_t i = 0; i < n; i++) {
+        double inverse = 1 / total[i];
+        total[i] = total[i] > 0 ? inverse : 0;
+    }
+}
+
+/* Few emitters: the first whose running sum of probabilities passes number * total. The last sum is the total itself, which the product cannot reach. */
+static void choose_few(const struct mcr_emitters *all, const struct mcr_emitter_lanes *points, const double *restrict number,
+                       struct mcr_emitter_scratch *s)
+{
+    struct mcr_emitter_lanes lanes = *points;
+    double *restrict seen = s->flag, *restrict share = s->share, *restrict running = s->wx, *restrict total = s->total;
+    int64_t *restrict chosen = s->chosen;
+    lanes.distance = s->flag;
+    for (uint32_t i = 0; i < lanes.n; i++) {
+        running[i] = 0;
+        share[i] = 0;
+        chosen[i] = -1;
+    }
+    for (uint32_t e = 0; e < all->count; e++) {
+        double probability = all->emitter[e].probability;
+        SEEN(all, e, &lanes);
+        MCR_LANES
+        for (uint32_t i = 0; i < lanes.n; i++) {
+            double target = number[i] * total[i], before = running[i], after = before + probability * seen[i];
+            int here = (before <= target) & (target < after);
+            share[i] = here ? probability : share[i];
+            chosen[i] = here ? (int64_t)e : chosen[i];
+            running[i] = after;
+        }
+    }
+}
+
+/* Many emitters: binary search, all lanes in step. */
+static void choose_many(const struct mcr_emitters *all, uint32_t n, const double *restrict number, struct mcr_emitter_scratch *s)
+{
+    int64_t *restrict chosen = s->chosen;
+    const double *restrict from = all->from;
+    for (uint32_t i = 0; i < n; i++)
+        chosen[i] = 0;
+    for (uint32_t level = all->levels; level-- > 0;) {
+        int64_t step = (int64_t)1 << level;
+        MCR_LANES
+        for (uint32_t i = 0; i < n; i++)
+            chosen[i] += from[chosen[i] + step] <= number[i] ? step : 0;
+    }
+    for (uint32_t i = 0; i < n; i++)
+        s->share[i] = all->emitter[chosen[i]].probability;
+}
+
+/* ---- drawing ------------------------------------------------------------------------------------------------------- */
+
+/* Draws in lanes of one kind; where solid angle is not steady, by area. */
+static void draw_lanes(uint32_t kind, uint32_t by, int alone, const struct mcr_emitter_lanes *lanes, const double *k, int varying,
+                       struct mcr_emitter_pack *second)
+{
+    const double *restrict density = lanes->density;
+    uint32_t falling = 0, count = 0;
+    DRAW(kind, by, alone, lanes, k, varying);
+    if (by == MCR_LIGHT_BY_AREA)
+        return;
+    for (uint32_t i = 0; i < lanes->n; i++)
+        falling += density[i] < 0;
+    if (falling > 0) {
+        for (uint32_t i = 0; i < lanes->n; i++) {
+            second->lane[count] = (int32_t)i;
+            count += density[i] < 0;
+        }
+        struct mcr_emitter_lanes part = pack_lanes(second, count);
+        gather_points(lanes, count, second->lane, second);
+        gather_numbers(lanes, count, second->lane, second);
+        for (uint32_t c = 0; varying && c < MCR_K_SIZE; c++)
+            gather(count, second->lane, k + c * MCR_EMITTER_BLOCK, second->k[c]);
+        DRAW(kind, MCR_LIGHT_BY_AREA, alone, &part, varying ? second->k[0] : k, varying);
+        scatter_drawn(count, second->lane, second, lanes);
+    }
+}
+
+/* Lists the lanes that chose emitter e (by_kind: an emitter of that kind). */
+static uint32_t list_chosen(const struct mcr_emitters *all, const struct mcr_emitter_scratch *s, uint32_t n, int64_t which, int by_kind,
+                            int32_t *restrict list)
+{
+    const int64_t *restrict chosen = s->chosen;
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < n; i++) {
+        int64_t e = chosen[i];
+        list[count] = (int32_t)i;
+        count += (by_kind ? e >= 0 && all->emitter[e].kind == which : e == which);
+    }
+    return count;
+}
+
+/* In point techniques the distance is wanted of lanes that were drawn by solid angle, too. */
+static void draw_group(const struct mcr_emitters *all, uint32_t by, int alone, uint32_t kind, int64_t which, int by_kind,
+                       const struct mcr_emitter_lanes *block, struct mcr_emitter_scratch *s)
+{
+    struct mcr_emitter_pack *pack = &s->pack;
+    uint32_t count = list_chosen(all, s, block->n, which, by_kind, pack->lane);
+    if (count == 0)
+        return;
+    struct mcr_emitter_lanes lanes = pack_lanes(pack, count);
+    gather_points(block, count, pack->lane, pack);
+    gather_numbers(block, count, pack->lane, pack);
+    if (by_kind)
+        gather_constants(all, s->chosen, count, pack->lane, pack);
+    draw_lanes(kind, by, alone, &lanes, by_kind ? pack->k[0] : all->k[which], by_kind, &s->second);
+    scatter_drawn(count, pack->lane, pack, block);
+}
+
+/* Chooses emitters and draws toward them. `block` has its arrays; its densities are those of the chosen emitter alone, given that it was chosen. */
+static void draw_block(const struct mcr_emitters *all, uint32_t by, int alone, const struct mcr_emitter_lanes *block, const double *number,
+                       struct mcr_emitter_scratch *s)
+{
+    uint32_t n = block->n;
+    if (all->count == 0) {
+        for (uint32_t i = 0; i < n; i++)
+            block->wx[i] = block->wy[i] = block->wz[i] = block->density[i] = block->distance[i] = 0;
+        return;
+    }
+    if (all->count == 1) {
+        draw_lanes(all->emitter[0].kind, by, alone, block, all->k[0], 0, &s->second);
+        return;
+    }
+    if (shares(all)) {
+        sum_seen(all, block, s);
+        choose_few(all, block, number, s);
+        invert_total(n, s->total);
+    } else {
+        choose_many(all, n, number, s);
+    }
+    for (uint32_t i = 0; i < n; i++)
+        block->wx[i] = block->wy[i] = block->wz[i] = block->density[i] = block->distance[i] = 0;
+    if (all->count <= MOST_BY_EMITTER) {
+        for (uint32_t e = 0; e < all->count; e++)
+            draw_group(all, by, alone, all->emitter[e].kind, e, 0, block, s);
+    } else {
+        for (uint32_t kind = 0; kind < MCR_EMITTER_KINDS; kind++)
+            if (all->kinds >> kind & 1)
+                draw_group(all, by, alone, kind, kind, 1, block, s);
+    }
+}
+
+/* ---- densities of directions --------------------------------------------------------------------------------------- */
+
+/* Adds to `sum` the densities of emitter e, times its probability, where the rays cross it. Lanes that chose it are left out (chosen may be NULL). */
+static void add_emitter(const struct mcr_emitters *all, uint32_t e, uint32_t by, const struct mcr_emitter_lanes *block, const int64_t *chosen,
+                        double *restrict sum, struct mcr_emitter_scratch *s)
+{
+    double *restrict flag = s->flag, probability = all->emitter[e].probability;
+    CROSS(all, e, block, flag);
+    if (chosen) {
+        MCR_LANES
+        for (uint32_t i = 0; i < block->n; i++)
+            flag[i] = chosen[i] == (int64_t)e ? 0 : flag[i];
+    }
+    uint32_t count = list_flagged(block->n, flag, s->list);
+    if (count == 0)
+        return;
+    struct mcr_emitter_pack *pack = &s->second;
+    struct mcr_emitter_lanes lanes = pack_lanes(pack, count);
+    gather_points(block, count, s->list, pack);
+    gather_directions(block, count, s->list, pack);
+    DENSITY(all->emitter[e].kind, by, 0, &lanes, all->k[e], 0);
+    for (uint32_t j = 0; j < count; j++)
+        sum[s->list[j]] += probability * pack->density[j];
+}
+
+static void scale(uint32_t n, const double *restrict factor, double *restrict value)
+{
+    MCR_LANES
+    for (uint32_t i = 0; i < n; i++)
+        value[i] *= factor[i];
+}
+
+static void density(const struct mcr_emitters *all, void *scratch, uint32_t by, const struct mcr_points *at, const struct mcr_directions *toward,
+                    double *out)
+{
+    struct mcr_emitter_scratch *s = scratch;
+    for (uint32_t base = 0; base < at->n; base += MCR_EMITTER_BLOCK) {
+        struct mcr_emitter_lanes block = block_points(at, base);
+        block.wx = toward->x + base, block.wy = toward->y + base, block.wz = toward->z + base;
+        for (uint32_t i = 0; i < block.n; i++)
+            out[base + i] = 0;
+        for (uint32_t e = 0; e < all->count; e++)
+            add_emitter(all, e, by, &block, NULL, out + base, s);
+        if (shares(all)) {
+            sum_seen(all, &block, s);
+            invert_total(block.n, s->total);
+            scale(block.n, s->total, out + base);
+        }
+    }
+}
+
+/* Completes the densities of drawn directions: the chosen emitter's is there, the others that the ray crosses are added. */
+static void complete(const struct mcr_emitters *all, uint32_t by, const struct mcr_emitter_lanes *block, double *restrict out,
+                     struct mcr_emitter_scratch *s)
+{
+    uint32_t n = block->n;
+    const double *restrict own = block->density, *restrict share = s->share;
+    MCR_LANES
+    for (uint32_t i = 0; i < n; i++)
+        out[i] = own[i] * share[i];
+    for (uint32_t e = 0; e < all->count; e++)
+        add_emitter(all, e, by, block, s->chosen, out, s);
+    if (shares(all))
+        scale(n, s->total, out);
+}
+
+static void draw(const struct mcr_emitters *all, void *scratch, uint32_t by, const struct mcr_points *at, const double *const *number,
+                 const struct mcr_directions *out, double *out_density)
+{
+    struct mcr_emitter_scratch *s = scratch;
+    for (uint32_t base = 0; base < at->n; base += MCR_EMITTER_BLOCK) {
+        struct mcr_emitter_lanes block = block_points(at, base);
+        block.u = number[1] + base, block.v = number[2] + base;
+        block.wx = out->x + base, block.wy = out->y + base, block.wz = out->z + base;
+        block.density = out_density && all->count <= 1 ? out_density + base : s->density;
+        block.distance = s->distance;
+        draw_block(all, by, 0, &block, number[0] + base, s);
+        if (out_density && all->count > 1)
+            complete(all, by, &block, out_density + base, s);
+    }
+}
+
+static void mass(const struct mcr_emitters *all, void *scratch, uint32_t by, const struct mcr_points *at, double *out)
+{
+    struct mcr_emitter_scratch *s = scratch;
+    int whole = all->count <= MCR_EMITTERS_FEW;
+    (void)by;
+    for (uint32_t base = 0; base < at->n; base += MCR_EMITTER_BLOCK) {
+        struct mcr_emitter_lanes block = block_points(at, base);
+        sum_seen(all, &block, s);
+        for (uint32_t i = 0; i < block.n; i++)
+            out[base + i] = whole ? (s->total[i] > 0 ? 1 : 0) : MINIMUM(s->total[i], 1);
+    }
+}
+
+/* ---- points on emitters --------------------------------------------------------------------------------------------- */
+
+/* Distances of lanes that were drawn by solid angle: those that have a direction and none. */
+static void find_distances(const struct mcr_emitters *all, const struct mcr_emitter_lanes *block, struct mcr_emitter_scratch *s)
+{
+    struct mcr_emitter_pack *pack = &s->pack;
+    for (uint32_t kind = 0; kind < MCR_EMITTER_KINDS; kind++) {
+        uint32_t count = 0;
+        if (!(all->kinds >> kind & 1))
+            continue;
+        for (uint32_t i = 0; i < block->n; i++) {
+            pack->lane[count] = (int32_t)i;
+            count += block->density[i] > 0 && block->distance[i] == 0 && all->emitter[s->chosen[i]].kind == kind;
+        }
+        struct mcr_emitter_lanes lanes = pack_lanes(pack, count);
+        gather_points(block, count, pack->lane, pack);
+        gather_directions(block, count, pack->lane, pack);
+        gather_constants(all, s->chosen, count, pack->lane, pack);
+        DISTANCE(kind, &lanes, pack->k[0], 1);
+        scatter(count, pack->lane, pack->distance, block->distance);
+    }
+}
+
+/* Tells the points that were drawn, and their densities. */
+static void store_points(const struct mcr_emitters *all, const struct mcr_emitter_lanes *block, const struct mcr_emitter_points *out, uint32_t base,
+                         double *restrict out_density, struct mcr_emitter_scratch *s)
+{
+    const int scaled = shares(all);
+    for (uint32_t i = 0; i < block->n; i++) {
+        double distance = block->distance[i], density = block->density[i] * s->share[i];
+        int good = density > 0 && distance > 0 && distance < MCR_INFINITY;
+        out->emitter[base + i] = good ? (int32_t)s->chosen[i] : -1;
+        out->distance[base + i] = good ? distance : 0;
+        out->qx[base + i] = good ? block->px[i] + distance * block->wx[i] : 0;
+        out->qy[base + i] = good ? block->py[i] + distance * block->wy[i] : 0;
+        out->qz[base + i] = good ? block->pz[i] + distance * block->wz[i] : 0;
+        if (!good)
+            block->wx[i] = block->wy[i] = block->wz[i] = 0;
+        if (out_density)
+            out_density[base + i] = good ? (scaled ? density * s->total[i] : density) : 0;
+    }
+}
+
+static void draw_point(const struct mcr_emitters *all, void *scratch, uint32_t by, const struct mcr_points *at, const double *const *number,
+                       const struct mcr_emitter_points *out, double *out_density)
+{
+    struct mcr_emitter_scratch *s = scratch;
+    for (uint32_t base = 0; base < at->n; base += MCR_EMITTER_BLOCK) {
+        struct mcr_emitter_lanes block = block_points(at, base);
+        block.u = number[1] + base, block.v = number[2] + base;
+        block.wx = out->wx + base, block.wy = out->wy + base, block.wz = out->wz + base;
+        block.density = s->density;
+        block.distance = s->distance;
+        for (uint32_t i = 0; all->count == 1 && i < block.n; i++) {
+            s->chosen[i] = 0;
+            s->share[i] = 1;
+        }
+        draw_block(all, by, 1, &block, number[0] + base, s);
+        if (by == MCR_LIGHT_BY_SOLID_ANGLE)
+            find_distances(all, &block, s);
+        store_points(all, &block, out, base, out_density, s);
+    }
+}
+
+/* The density of each lane's emitter at its point, given that it was chosen; 0 where the emitter is not seen. */
+static void density_of_points(const struct mcr_emitters *all, uint32_t by, const struct mcr_emitter_lanes *block, struct mcr_emitter_scratch *s)
+{
+    struct mcr_emitter_pack *pack = &s->pack;
+    for (uint32_t kind = 0; kind < MCR_EMITTER_KINDS; kind++) {
+        uint32_t count = all->kinds >> kind & 1 ? list_chosen(all, s, block->n, kind, 1, pack->lane) : 0;
+        struct mcr_emitter_lanes lanes = pack_lanes(pack, count);
+        if (count == 0)
+            continue;
+        gather_points(block, count, pack->lane, pack);
+        gather_directions(block, count, pack->lane, pack);
+        gather(count, pack->lane, block->distance, pack->distance);
+        gather_constants(all, s->chosen, count, pack->lane, pack);
+        DENSITY(kind, by, 1, &lanes, pack->k[0], 1);
+        scatter(count, pack->lane, pack->density, block->density);
+    }
+}
+
+/* flag: 1 where the lane's emitter is seen. */
+static void see_chosen(const struct mcr_emitters *all, const struct mcr_emitter_lanes *block, struct mcr_emitter_scratch *s)
+{
+    for (uint32_t i = 0; i < block->n; i++) {
+        struct mcr_emitter_lanes one = {.n = 1, .px = block->px + i, .py = block->py + i, .pz = block->pz + i, .distance = s->flag + i};
+        s->flag[i] = 0;
+        if (s->chosen[i] >= 0)
+            SEEN(all, (uint32_t)s->chosen[i], &one);
+    }
+}
+
+static void density_point(const struct mcr_emitters *all, void *scratch, uint32_t by, const struct mcr_points *at,
+                          const struct mcr_emitter_points *points, double *out)
+{
+    struct mcr_emitter_scratch *s = scratch;
+    for (uint32_t base = 0; base < at->n; base += MCR_EMITTER_BLOCK) {
+        struct mcr_emitter_lanes block = block_points(at, base);
+        block.wx = points->wx + base, block.wy = points->wy + base, block.wz = points->wz + base;
+        block.density = s->density;
+        block.distance = points->distance + base;
+        for (uint32_t i = 0; i < block.n; i++) {
+            int32_t e = points->emitter[base + i];
+            s->chosen[i] = e;
+            s->density[i] = 0;
+            s->share[i] = e < 0 ? 0 : all->count == 1 ? 1 : all->emitter[e].probability;
+        }
+        density_of_points(all, by, &block, s);
+        if (shares(all)) {
+            sum_seen(all, &block, s);
+            invert_total(block.n, s->total);
+            scale(block.n, s->total, s->share);
+        }
+        see_chosen(all, &block, s);
+        for (uint32_t i = 0; i < block.n; i++)
+            out[base + i] = s->flag[i] != 0 ? s->share[i] * s->density[i] : 0;
+    }
+}
+
+const struct mcr_emitter_functions MCR_ISA_NAME(mcr_emitter_functions) = {
+    .draw = draw, .density = density, .mass = mass, .draw_point = draw_point, .density_point = density_point};

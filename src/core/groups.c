@@ -1,0 +1,230 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Groups of materials that one call of a plugin can handle, the inputs of such calls, and the tables of surfaces. */
+#include "core/groups.h"
+
+#include <math.h>
+#include <string.h>
+
+#define SCATTERS (MCR_MATERIAL_REFLECTS | MCR_MATERIAL_TRANSMITS | MCR_MATERIAL_DELTA)
+#define EMITS (MCR_MATERIAL_EMITS_FRONT | MCR_MATERIAL_EMITS_BACK)
+
+static const struct mcr_material_plugin *plugin_of(const struct mcr_scene_material *material)
+{
+    return (const struct mcr_material_plugin *)(const void *)material->node->descriptor;
+}
+
+/* Whether the material fits the group: the same stateless plugin, doing the same things. */
+static int fits(const struct mcr_group *group, const struct mcr_scene *scene, const struct mcr_scene_material *material)
+{
+    const struct mcr_scene_material *first = &scene->material[group->first];
+    return plugin_of(material) == group->plugin && (group->plugin->flags & MCR_MATERIAL_STATELESS) && first->traits.does == material->traits.does;
+}
+
+static int group_start(struct mcr_arena *arena, struct mcr_group *group, const struct mcr_scene *scene, uint32_t m)
+{
+    const struct mcr_scene_material *material = &scene->material[m];
+    group->plugin = plugin_of(material);
+    group->instance = material->node->instance;
+    group->node = material->node;
+    group->first = m;
+    group->scatters = (material->traits.does & SCATTERS) && group->plugin->evaluate;
+    group->emits = (material->traits.does & EMITS) && group->plugin->emission;
+    group->channels = 3 * material->node->descriptor->parameter_count;
+    group->constant = mcr_arena_alloc(arena, (size_t)group->channels * MCR_LANE_PAD, sizeof(double));
+    group->table = mcr_arena_alloc(arena, group->channels, sizeof *group->table);
+    group->varies = mcr_arena_alloc(arena, group->channels, 1);
+    if (!group->constant || !group->table || !group->varies)
+        return -1;
+    for (uint32_t c = 0; c < group->channels; c++) {
+        for (uint32_t i = 0; i < MCR_LANE_PAD; i++)
+            group->constant[c * MCR_LANE_PAD + i] = material->node->values.number[c];
+        group->table[c] = mcr_arena_alloc(arena, scene->material_count, sizeof(double));
+        if (!group->table[c])
+            return -1;
+    }
+    return 0;
+}
+
+int mcr_groups_init(struct mcr_core *core, struct mcr_arena *arena)
+{
+    const struct mcr_scene *scene = core->scene;
+    core->group = mcr_arena_alloc(arena, scene->material_count, sizeof *core->group);
+    core->group_of_material = mcr_arena_alloc(arena, scene->material_count, sizeof *core->group_of_material);
+    if (!core->group || !core->group_of_material)
+        return -1;
+    for (uint32_t m = 0; m < scene->material_count; m++) {
+        const struct mcr_node *node = scene->material[m].node;
+        uint32_t g = 0;
+        while (g < core->group_count && !fits(&core->group[g], scene, &scene->material[m]))
+            g++;
+        struct mcr_group *group = &core->group[g];
+        if (g == core->group_count && (core->group_count++, group_start(arena, group, scene, m)))
+            return -1;
+        core->group_of_material[m] = g;
+        group->material_count++;
+        for (uint32_t c = 0; c < group->channels; c++) {
+            group->table[c][m] = node->values.number[c];
+            group->varies[c] |= node->values.number[c] != group->constant[c * MCR_LANE_PAD];
+        }
+        core->channels = group->channels > core->channels ? group->channels : core->channels;
+    }
+    return 0;
+}
+
+struct mcr_inputs mcr_group_inputs(struct mcr_batch *batch, const struct mcr_group *group, uint32_t begin, uint32_t end)
+{
+    const uint32_t *material = batch->at.material;
+    for (uint32_t c = 0; c < group->channels; c++) {
+        if (!group->varies[c]) {
+            batch->channel[c] = group->constant + (size_t)c * MCR_LANE_PAD;
+            batch->stride[c] = 0;
+            continue;
+        }
+        double *lane = batch->lane_input + (size_t)c * batch->lanes;
+        const double *table = group->table[c];
+        MCR_LANES
+        for (uint32_t k = begin; k < end; k++)
+            lane[k] = table[material[k]];
+        batch->channel[c] = lane + begin;
+        batch->stride[c] = 1;
+    }
+    return (struct mcr_inputs){sizeof(struct mcr_inputs), group->channels / 3, batch->channel, batch->stride};
+}
+
+struct mcr_points mcr_batch_points(const struct mcr_batch *batch, uint32_t begin, uint32_t end)
+{
+    const struct mcr_surface_points *at = &batch->at;
+    return (struct mcr_points){.size = sizeof(struct mcr_points),
+                               .n = end - begin,
+                               .px = at->px + begin,
+                               .py = at->py + begin,
+                               .pz = at->pz + begin,
+                               .nx = at->nx + begin,
+                               .ny = at->ny + begin,
+                               .nz = at->nz + begin,
+                               .gx = at->gx + begin,
+                               .gy = at->gy + begin,
+                               .gz = at->gz + begin,
+                               .ox = at->ox + begin,
+                               .oy = at->oy + begin,
+                               .oz = at->oz + begin,
+                               .side = at->side + begin};
+}
+
+static double norm(const double v[3])
+{
+    return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+}
+
+static void cross(const double a[3], const double b[3], double out[3])
+{
+    out[0] = a[1] * b[2] - a[2] * b[1];
+    out[1] = a[2] * b[0] - a[0] * b[2];
+    out[2] = a[0] * b[1] - a[1] * b[0];
+}
+
+static void set_flat(struct mcr_surfaces *s, uint32_t p, const double c[3], const double n[3], double reach, uint32_t material)
+{
+    s->cx[p] = c[0];
+    s->cy[p] = c[1];
+    s->cz[p] = c[2];
+    s->nx[p] = n[0];
+    s->ny[p] = n[1];
+    s->nz[p] = n[2];
+    s->offset[p] = n[0] * c[0] + n[1] * c[1] + n[2] * c[2];
+    s->radius[p] = 0;
+    s->reach[p] = reach;
+    s->material[p] = material;
+}
+
+/* A box's faces: through its corner or the opposite one, normals outward. */
+static void set_box(struct mcr_surfaces *s, const struct mcr_shape *shape, double reach)
+{
+    for (int axis = 0; axis < 3; axis++) {
+        const double *edge = shape->e[axis];
+        double n[3], far[3];
+        cross(shape->e[(axis + 1) % 3], shape->e[(axis + 2) % 3], n);
+        double length = norm(n), outward = n[0] * edge[0] + n[1] * edge[1] + n[2] * edge[2] > 0 ? 1 : -1;
+        for (int j = 0; j < 3; j++) {
+            n[j] *= -outward / length;
+            far[j] = shape->c[j] + edge[j];
+        }
+        set_flat(s, shape->primitive + 2 * (uint32_t)axis, shape->c, n, reach, shape->material);
+        for (int j = 0; j < 3; j++)
+            n[j] = -n[j];
+        set_flat(s, shape->primitive + 2 * (uint32_t)axis + 1, far, n, reach, shape->material);
+    }
+}
+
+static void set_shape(struct mcr_surfaces *s, const struct mcr_shape *shape)
+{
+    double centre = norm(shape->c), size = norm(shape->e[0]) + norm(shape->e[1]) + norm(shape->e[2]);
+    switch (shape->kind) {
+    case MCR_SHAPE_BOX:
+        set_box(s, shape, centre + size);
+        break;
+    case MCR_SHAPE_SPHERE:
+        set_flat(s, shape->primitive, shape->c, shape->n, centre > shape->radius ? centre : shape->radius, shape->material);
+        s->radius[shape->primitive] = shape->radius;
+        s->round = 1;
+        break;
+    case MCR_SHAPE_PLANE:
+        set_flat(s, shape->primitive, shape->c, shape->n, centre, shape->material);
+        break;
+    default:
+        set_flat(s, shape->primitive, shape->c, shape->n, centre + size, shape->material);
+    }
+}
+
+static void set_triangles(struct mcr_surfaces *s, const struct mcr_triangles *m)
+{
+    for (uint32_t f = 0; f < m->count; f++) {
+        const uint32_t *v = m->vertex[f];
+        double a[3] = {m->x[v[0]], m->y[v[0]], m->z[v[0]]}, e[2][3], n[3], reach = norm(a);
+        for (int i = 0; i < 2; i++) {
+            double p[3] = {m->x[v[i + 1]], m->y[v[i + 1]], m->z[v[i + 1]]};
+            reach = norm(p) > reach ? norm(p) : reach;
+            for (int j = 0; j < 3; j++)
+                e[i][j] = p[j] - a[j];
+        }
+        cross(e[0], e[1], n);
+        double length = norm(n);
+        for (int j = 0; j < 3; j++)
+            n[j] /= length;
+        set_flat(s, m->first_primitive + f, a, n, reach, m->material[f]);
+    }
+}
+
+int mcr_surfaces_init(struct mcr_core *core, struct mcr_arena *arena)
+{
+    const struct mcr_scene *scene = core->scene;
+    struct mcr_surfaces *s = &core->surfaces;
+    double **array[] = {&s->nx, &s->ny, &s->nz, &s->offset, &s->cx, &s->cy, &s->cz, &s->radius, &s->reach};
+    s->count = scene->primitive_count;
+    for (size_t i = 0; i < sizeof array / sizeof *array; i++)
+        if (!(*array[i] = mcr_arena_alloc(arena, s->count, sizeof(double))))
+            return -1;
+    s->material = mcr_arena_alloc(arena, s->count, sizeof *s->material);
+    s->zone = mcr_arena_alloc(arena, (size_t)s->count + 1, sizeof *s->zone);
+    if (!s->material || !s->zone)
+        return -1;
+    for (uint32_t i = 0; i < scene->shape_count; i++) {
+        set_shape(s, &scene->shape[i]);
+        if (scene->shape[i].kind != MCR_SHAPE_ELLIPSOID)
+            continue;
+        if (!s->quadric) {
+            if (!(s->quadric = mcr_arena_alloc(arena, s->count, sizeof *s->quadric)))
+                return -1;
+            memset(s->quadric, 0xff, s->count * sizeof *s->quadric);
+        }
+        s->quadric[scene->shape[i].primitive] = i;
+    }
+    set_triangles(s, &scene->triangles);
+    s->smooth = scene->triangles.normal != NULL;
+    s->zone[0] = 2 * core->group_count;
+    for (uint32_t p = 0; p < s->count; p++) {
+        uint32_t g = core->group_of_material[s->material[p]];
+        s->zone[p + 1] = core->group[g].scatters ? g : core->group_count + g;
+    }
+    return 0;
+}

@@ -1,0 +1,255 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* One thread's round: new camera paths, hits, emission, one scattering event for every path, rays for those that go on. */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "base/cpu.h"
+#include "core/host.h"
+#include "core/pass.h"
+
+/* Runs a statement and books its time on a stage, with --profile. */
+#define TIMED(STAGE, STATEMENT)                                          \
+    do {                                                                 \
+        if (batch->core->options->profile) {                             \
+            double start = mcr_wall_seconds();                                        \
+            STATEMENT;                                                   \
+            batch->stage_seconds[STAGE] += mcr_wall_seconds() - start;                \
+        } else {                                                         \
+            STATEMENT;                                                   \
+        }                                                                \
+    } while (0)
+
+static void fail(struct mcr_batch *batch, struct mcr_pass *pass, const struct mcr_node *node, int32_t status)
+{
+    static const char *const reason[] = {"", "invalid", "out of memory", "unsupported", "internal error"};
+    int none = 0;
+    char text[sizeof pass->error];
+    snprintf(text, sizeof text, "%s: %s%s%s", node->descriptor->name, status < 0 && status >= -4 ? reason[-status] : "unknown status",
+             batch->context.message[0] ? ": " : "", batch->context.message);
+    if (atomic_compare_exchange_strong(&pass->failed, &none, 1))
+        memcpy(pass->error, text, sizeof text);
+}
+
+/* ---- Jobs ------------------------------------------------------------------------------------------------------ */
+
+/* A job whose paths are not all begun, taken from the pass at need; NULL if there is none or all places are taken. */
+static struct mcr_job *open_job(struct mcr_batch *batch, struct mcr_pass *pass)
+{
+    struct mcr_job *empty = NULL;
+    for (uint32_t i = 0; i < MCR_JOBS; i++) {
+        struct mcr_job *job = &batch->job[i];
+        if (job->busy && job->begun < job->paths)
+            return job;
+        if (!job->busy && !empty)
+            empty = job;
+    }
+    if (!empty || atomic_load_explicit(&pass->next, memory_order_relaxed) >= pass->cells)
+        return NULL;
+    uint64_t most = MCR_JOB_SLOTS / pass->cell_samples;
+    uint64_t first = atomic_fetch_add(&pass->next, most);
+    if (first >= pass->cells)
+        return NULL;
+    uint32_t cells = (uint32_t)(pass->cells - first < most ? pass->cells - first : most);
+    *empty = (struct mcr_job){.first_cell = first, .cells = cells, .paths = cells * pass->cell_samples, .busy = 1};
+    empty->pending = empty->paths;
+    size_t slot = (size_t)(empty - batch->job) * MCR_JOB_SLOTS;
+    memset(batch->slot_r + slot, 0, empty->paths * sizeof(double));
+    memset(batch->slot_g + slot, 0, empty->paths * sizeof(double));
+    memset(batch->slot_b + slot, 0, empty->paths * sizeof(double));
+    return empty;
+}
+
+/* Counts samples that are not finite and makes them black. */
+static void reject(struct mcr_batch *batch, const struct mcr_pass *pass, uint64_t cell, size_t slot)
+{
+    for (uint32_t s = 0; s < pass->cell_samples; s++) {
+        double *r = &batch->slot_r[slot + s], *g = &batch->slot_g[slot + s], *b = &batch->slot_b[slot + s];
+        if (isfinite(*r) && isfinite(*g) && isfinite(*b))
+            continue;
+        *r = *g = *b = 0;
+        if (!batch->not_finite++ || cell < batch->not_finite_cell) {
+            batch->not_finite_cell = cell;
+            batch->not_finite_sample = s;
+        }
+    }
+}
+
+static void finish_jobs(struct mcr_batch *batch, struct mcr_pass *pass)
+{
+    for (uint32_t i = 0; i < MCR_JOBS; i++) {
+        struct mcr_job *job = &batch->job[i];
+        if (!job->busy || job->pending)
+            continue;
+        for (uint32_t c = 0; c < job->cells; c++) {
+            size_t slot = (size_t)i * MCR_JOB_SLOTS + (size_t)c * pass->cell_samples;
+            struct mcr_cell *cell = &pass->cell[job->first_cell + c];
+            mcr_cell_sum(batch->slot_r + slot, batch->slot_g + slot, batch->slot_b + slot, pass->cell_samples, cell);
+            if (isfinite(cell->sum[0] + cell->sum[1] + cell->sum[2]))
+                continue;
+            reject(batch, pass, job->first_cell + c, slot);
+            mcr_cell_sum(batch->slot_r + slot, batch->slot_g + slot, batch->slot_b + slot, pass->cell_samples, cell);
+        }
+        job->busy = 0;
+        atomic_fetch_add_explicit(&pass->done, job->cells, memory_order_relaxed);
+    }
+}
+
+/* ---- Camera ---------------------------------------------------------------------------------------------------- */
+
+/* States for the next n paths of a job, from lane `to` on: cell by cell, so that only whole cells cost a division. */
+static void begin_paths(struct mcr_batch *batch, const struct mcr_pass *pass, struct mcr_job *job, uint32_t to, uint32_t n)
+{
+    const struct mcr_film_settings *film = &batch->core->scene->film;
+    const struct mcr_paths *paths = &batch->state;
+    const uint32_t width = film->x1 - film->x0, place = (uint32_t)(job - batch->job) * MCR_JOB_SLOTS;
+    for (uint32_t i = 0; i < n;) {
+        uint32_t path = job->begun + i, sample = path % pass->cell_samples, left = pass->cell_samples - sample;
+        uint32_t end = i + (left < n - i ? left : n - i);
+        uint64_t cell = job->first_cell + path / pass->cell_samples, pixel = cell % pass->pixels;
+        uint32_t x = film->x0 + (uint32_t)(pixel % width), y = film->y0 + (uint32_t)(pixel / width);
+        uint64_t first = pass->first + cell / pass->pixels * pass->cell_samples + sample - i;
+        for (uint32_t j = i; j < end; j++) {
+            batch->camera_x[j] = x;
+            batch->camera_y[j] = y;
+            batch->camera_pixel[j] = (uint64_t)y * film->width + x;
+            paths->index[to + j] = (uint32_t)first + j;
+        }
+        i = end;
+    }
+    for (uint32_t i = 0; i < n; i++) {
+        batch->camera_replicate[i] = pass->replicate;
+        paths->planned[to + i] = pass->planned;
+        paths->slot[to + i] = place + job->begun + i;
+        paths->bounce[to + i] = 0;
+        batch->source[batch->rays + i] = to + i;
+    }
+    for (uint32_t i = 0; i < n; i++)
+        paths->r[to + i] = paths->g[to + i] = paths->b[to + i] = 1;
+    job->begun += n;
+}
+
+static int32_t camera(struct mcr_batch *batch, struct mcr_pass *pass)
+{
+    struct mcr_core *core = batch->core;
+    const struct mcr_paths *paths = &batch->state;
+    struct mcr_job *job;
+    while (batch->rays < core->capacity && (job = open_job(batch, pass))) {
+        uint32_t room = core->capacity - batch->rays, to = batch->states, n = job->paths - job->begun < room ? job->paths - job->begun : room;
+        int lens = core->scene->camera.kind == MCR_CAMERA_THIN_LENS && core->scene->camera.lens_radius > 0;
+        begin_paths(batch, pass, job, to, n);
+        core->stages->path_keys(core->scene->render.seed, n, batch->camera_pixel, batch->camera_replicate, paths->index + to, paths->pixel_key + to,
+                                paths->path_key + to);
+        int32_t status = mcr_numbers(batch, paths, to, to + n, 0, 2, batch->number);
+        if (!status && lens)
+            status = mcr_numbers(batch, paths, to, to + n, MCR_DIMENSION_LENS, 2, batch->number + 2);
+        if (status)
+            return status;
+        struct mcr_camera_lanes lanes = {.n = n,
+                                         .x = batch->camera_x,
+                                         .y = batch->camera_y,
+                                         .film = (const double *const *)batch->number,
+                                         .lens = lens ? (const double *const *)batch->number + 2 : NULL,
+                                         .ox = batch->rox + batch->rays,
+                                         .oy = batch->roy + batch->rays,
+                                         .oz = batch->roz + batch->rays,
+                                         .dx = batch->rdx + batch->rays,
+                                         .dy = batch->rdy + batch->rays,
+                                         .dz = batch->rdz + batch->rays};
+        core->stages->camera(core->scene, &lanes);
+        batch->rays += n;
+        batch->states = (to + n + MCR_LANE_PAD - 1) / MCR_LANE_PAD * MCR_LANE_PAD;
+        batch->camera_rays += n;
+    }
+    return MCR_OK;
+}
+
+/* ---- One scattering event -------------------------------------------------------------------------------------- */
+
+static struct mcr_colours colours(struct mcr_batch *batch, uint32_t begin, uint32_t end)
+{
+    return (struct mcr_colours){sizeof(struct mcr_colours), end - begin, batch->fr + begin, batch->fg + begin, batch->fb + begin};
+}
+
+static int32_t emission(struct mcr_batch *batch)
+{
+    for (uint32_t r = 0; r < batch->range_count; r++) {
+        const struct mcr_range *range = &batch->range[r];
+        if (!batch->core->group[range->group].emits)
+            continue;
+        struct mcr_colours out = colours(batch, range->begin, range->end);
+        int32_t status = mcr_group_emission(batch, range, &out);
+        if (status)
+            return status;
+        batch->core->stages->emit(batch, range->begin, range->end);
+    }
+    return MCR_OK;
+}
+
+/* The points of one group: directions, f cos, throughput. */
+static int32_t scatter_range(struct mcr_batch *batch, const struct mcr_range *range)
+{
+    const struct mcr_core *core = batch->core;
+    const uint32_t b = range->begin, n = range->end - b;
+    const struct mcr_node *node = core->scene->sampler->directions;
+    struct mcr_points at = mcr_batch_points(batch, b, range->end);
+    struct mcr_directions toward = {sizeof toward, n, batch->wx + b, batch->wy + b, batch->wz + b};
+    struct mcr_colours out = colours(batch, b, range->end);
+    double *number[MCR_NUMBERS_MAX], *roulette = batch->number[MCR_NUMBERS_MAX - 1] + b;
+    int32_t status;
+    for (uint32_t k = 0; k < MCR_NUMBERS_MAX; k++)
+        number[k] = batch->number[k] + b;
+    batch->running = range;
+    TIMED(MCR_STAGE_NUMBERS, status = mcr_numbers(batch, &batch->sorted, b, range->end, MCR_DIMENSION_SAMPLER, core->dimensions, number));
+    if (!status)
+        TIMED(MCR_STAGE_SAMPLER,
+              status = mcr_node_draw(batch, node, core->continuing, &at, (const double *const *)number, &toward, batch->density + b));
+    if (!status)
+        TIMED(MCR_STAGE_MATERIAL, status = mcr_group_evaluate(batch, range, &toward, &out));
+    if (!status && core->scene->render.roulette)
+        TIMED(MCR_STAGE_NUMBERS, status = mcr_numbers(batch, &batch->sorted, b, range->end, MCR_DIMENSION_ROULETTE, 1, &roulette));
+    batch->running = NULL;
+    if (status)
+        return status;
+    TIMED(MCR_STAGE_SCATTER, core->stages->scatter(batch, b, range->end, core->scene->render.roulette ? roulette : NULL));
+    batch->scatterings += n;
+    return MCR_OK;
+}
+
+/* Everybody's next ray, after camera() has filled the batch up. Returns 0, or a plugin's failure. */
+static int32_t step(struct mcr_batch *batch, struct mcr_pass *pass)
+{
+    struct mcr_core *core = batch->core;
+    int32_t status;
+    struct mcr_rays rays = {batch->rays, batch->rox, batch->roy, batch->roz, batch->rdx, batch->rdy, batch->rdz};
+    TIMED(MCR_STAGE_HIT, core->trace->closest(core->accel, &rays, batch->t, batch->hit));
+    TIMED(MCR_STAGE_SORT, core->stages->sort(batch));
+    if (core->background && batch->miss_count)
+        core->stages->background(batch);
+    TIMED(MCR_STAGE_SURFACE, core->stages->surface(batch));
+    TIMED(MCR_STAGE_EMISSION, status = emission(batch));
+    for (uint32_t r = 0; !status && r < batch->range_count && !batch->range[r].ends; r++)
+        status = scatter_range(batch, &batch->range[r]);
+    if (status)
+        return status;
+    TIMED(MCR_STAGE_COMPACT, core->stages->compact(batch));
+    batch->bounce_rays += batch->rays;
+    TIMED(MCR_STAGE_FILM, finish_jobs(batch, pass));
+    return MCR_OK;
+}
+
+void mcr_batch_run(struct mcr_batch *batch, struct mcr_pass *pass, uint32_t thread)
+{
+    while (!atomic_load_explicit(&pass->failed, memory_order_relaxed)) {
+        int32_t status;
+        TIMED(MCR_STAGE_CAMERA, status = camera(batch, pass));
+        if (!status && !batch->rays)
+            return;
+        if (!status)
+            status = step(batch, pass);
+        if (status)
+            fail(batch, pass, batch->context.node ? batch->context.node : batch->core->scene->sampler->directions, status);
+        if (thread == 0 && pass->tick)
+            pass->tick(pass->tick_data, pass);
+    }
+}

@@ -1,0 +1,240 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Rendering: what is assembled for the scene, threads, and the order of passes. */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/cpu.h"
+#include "base/threads.h"
+#include "core/groups.h"
+#include "core/host.h"
+#include "core/pass.h"
+
+/* Rays in a batch by default: their arrays stay in the second-level cache (measured: `make bench`). */
+#define DEFAULT_BATCH 1024u
+/* Cells of a pass at least, where the pixels are few: a million samples, so that threads have enough to take. */
+#define PASS_CELLS 65536u
+
+const char *const mcr_stage_name[MCR_STAGE_COUNT] = {"camera",  "hit",   "sort",     "surface", "emission", "numbers",
+                                                     "sampler", "light", "material", "scatter", "compact",  "film"};
+
+struct render {
+    struct mcr_core core;
+    struct mcr_arena *arena;
+    struct mcr_pass pass;
+    struct mcr_batch *batch; /* threads */
+    uint32_t threads;
+    uint64_t samples_before;  /* of earlier passes */
+    uint64_t samples_total;
+    double start, last_tick;
+};
+
+static const struct mcr_stages *stages_of(uint32_t isa)
+{
+#if MCR_ISA_COUNT > 1
+    return isa == MCR_ISA_AVX512 ? &mcr_stages_isa2 : isa == MCR_ISA_AVX2 ? &mcr_stages_isa1 : &mcr_stages_isa0;
+#else
+    (void)isa;
+    return &mcr_stages_isa0;
+#endif
+}
+
+static const struct mcr_accel_functions *trace_of(uint32_t isa, uint32_t kind)
+{
+    uint32_t k = kind == MCR_ACCEL_BVH;
+#if MCR_ISA_COUNT > 1
+    return isa == MCR_ISA_AVX512 ? &mcr_accel_functions_isa2[k] : isa == MCR_ISA_AVX2 ? &mcr_accel_functions_isa1[k] : &mcr_accel_functions_isa0[k];
+#else
+    (void)isa;
+    return &mcr_accel_functions_isa0[k];
+#endif
+}
+
+static const struct mcr_emitter_functions *lights_of(uint32_t isa)
+{
+#if MCR_ISA_COUNT > 1
+    return isa == MCR_ISA_AVX512 ? &mcr_emitter_functions_isa2 : isa == MCR_ISA_AVX2 ? &mcr_emitter_functions_isa1 : &mcr_emitter_functions_isa0;
+#else
+    (void)isa;
+    return &mcr_emitter_functions_isa0;
+#endif
+}
+
+/* Assembles the core for the scene. */
+static int prepare(struct render *render, const struct mcr_scene *scene, const struct mcr_accel *accel, const struct mcr_render_options *options)
+{
+    struct mcr_core *core = &render->core;
+    const struct mcr_node *directions = scene->sampler->directions;
+    const double *background = scene->render.background;
+    core->scene = scene;
+    core->accel = accel;
+    core->options = options;
+    core->trace = trace_of(options->isa, accel->kind);
+    core->stages = stages_of(options->isa);
+    core->lights = lights_of(options->isa);
+    core->capacity = scene->render.batch ? (scene->render.batch + MCR_LANE_PAD - 1) / MCR_LANE_PAD * MCR_LANE_PAD : DEFAULT_BATCH;
+    core->needs_samples = scene->sampler->source_count > 0;
+    core->background = background[0] > 0 || background[1] > 0 || background[2] > 0;
+    for (uint32_t t = 0; t < directions->technique_count; t++) {
+        core->dimensions += directions->technique[t].dimensions;
+        if (directions->technique[t].continues)
+            core->continuing = t;
+    }
+    core->emitters = mcr_emitters_create(render->arena, scene);
+    if (!core->emitters || mcr_groups_init(core, render->arena) || mcr_surfaces_init(core, render->arena))
+        return -1;
+    mcr_host_init(core);
+    core->scratch_bytes = mcr_host_scratch(core);
+    return 0;
+}
+
+static void tick(void *data, const struct mcr_pass *pass)
+{
+    struct render *render = data;
+    const struct mcr_render_options *options = render->core.options;
+    double seconds = mcr_wall_seconds() - render->start;
+    if (seconds - render->last_tick < 0.1)
+        return;
+    render->last_tick = seconds;
+    uint64_t done = render->samples_before + atomic_load_explicit(&pass->done, memory_order_relaxed) * pass->cell_samples;
+    options->progress(options->progress_data, (double)done / (double)render->samples_total, seconds);
+}
+
+static void work(void *argument, uint32_t thread)
+{
+    struct render *render = argument;
+    mcr_batch_run(&render->batch[thread], &render->pass, thread);
+}
+
+/* Sums what the threads counted in a pass. */
+static void collect(struct render *render, struct mcr_render_stats *stats)
+{
+    const struct mcr_film_settings *film = &render->core.scene->film;
+    const struct mcr_pass *pass = &render->pass;
+    uint64_t cell = UINT64_MAX, before = stats->not_finite;
+    for (uint32_t i = 0; i < render->threads; i++) {
+        struct mcr_batch *batch = &render->batch[i];
+        stats->camera_rays += batch->camera_rays;
+        stats->bounce_rays += batch->bounce_rays;
+        stats->shadow_rays += batch->shadow_rays;
+        stats->scatterings += batch->scatterings;
+        stats->not_finite += batch->not_finite;
+        for (int s = 0; s < MCR_STAGE_COUNT; s++)
+            stats->stage_seconds[s] += batch->stage_seconds[s];
+        if (batch->not_finite && batch->not_finite_cell < cell && !before) {
+            cell = batch->not_finite_cell;
+            stats->not_finite_x = film->x0 + (uint32_t)(cell % pass->pixels % (film->x1 - film->x0));
+            stats->not_finite_y = film->y0 + (uint32_t)(cell % pass->pixels / (film->x1 - film->x0));
+            stats->not_finite_sample = pass->first + cell / pass->pixels * pass->cell_samples + batch->not_finite_sample;
+        }
+        batch->camera_rays = batch->bounce_rays = batch->shadow_rays = batch->scatterings = batch->not_finite = 0;
+        memset(batch->stage_seconds, 0, sizeof batch->stage_seconds);
+    }
+}
+
+/* Runs one pass of `blocks` cells a pixel and hands them on. Returns 0, or -1 with pass.error set. */
+static int run_pass(struct render *render, const struct mcr_cell_sink *sink, uint64_t first, uint32_t cell_samples, uint64_t blocks,
+                    struct mcr_render_stats *stats)
+{
+    struct mcr_pass *pass = &render->pass;
+    pass->first = first;
+    pass->cell_samples = cell_samples;
+    pass->cells = pass->pixels * blocks;
+    atomic_store(&pass->next, 0);
+    atomic_store(&pass->done, 0);
+    mcr_threads_run(render->threads, work, render);
+    if (atomic_load(&pass->failed))
+        return -1;
+    for (uint64_t b = 0; b < blocks; b++)
+        if (sink->add(sink->data, pass->cell + b * pass->pixels, cell_samples)) {
+            snprintf(pass->error, sizeof pass->error, "out of memory");
+            return -1;
+        }
+    collect(render, stats);
+    stats->passes++;
+    stats->samples += pass->cells * cell_samples;
+    render->samples_before = stats->samples;
+    return 0;
+}
+
+/* All passes of one replicate. */
+static int run_replicate(struct render *render, const struct mcr_cell_sink *sink, uint32_t replicate, uint32_t planned, struct mcr_render_stats *stats)
+{
+    const struct mcr_render_options *options = render->core.options;
+    struct mcr_pass *pass = &render->pass;
+    uint64_t at_once = PASS_CELLS / pass->pixels ? PASS_CELLS / pass->pixels : 1;
+    pass->replicate = replicate;
+    pass->planned = planned;
+    for (uint32_t done = 0; done < planned;) {
+        if (options->stop && *options->stop) {
+            stats->interrupted = 1;
+            return 0;
+        }
+        uint32_t left = planned - done, cell_samples = left < MCR_CELL_SAMPLES ? left : MCR_CELL_SAMPLES;
+        uint64_t blocks = left / cell_samples < at_once ? left / cell_samples : at_once;
+        if (run_pass(render, sink, done, cell_samples, blocks, stats))
+            return -1;
+        done += (uint32_t)(blocks * cell_samples);
+    }
+    if (sink->end_replicate)
+        sink->end_replicate(sink->data);
+    return 0;
+}
+
+static int run_all(struct render *render, const struct mcr_scene *scene, const struct mcr_cell_sink *sink, struct mcr_render_stats *stats)
+{
+    const struct mcr_render_settings *settings = &scene->render;
+    for (uint32_t r = 0; r < settings->replicates && !stats->interrupted; r++) {
+        uint32_t planned = settings->spp / settings->replicates + (r < settings->spp % settings->replicates);
+        if (run_replicate(render, sink, r, planned, stats))
+            return -1;
+    }
+    return 0;
+}
+
+static int batches_create(struct render *render)
+{
+    render->batch = calloc(render->threads, sizeof *render->batch);
+    if (!render->batch)
+        return -1;
+    for (uint32_t i = 0; i < render->threads; i++)
+        if (mcr_batch_init(&render->batch[i], &render->core))
+            return -1;
+    return 0;
+}
+
+int mcr_render(const struct mcr_scene *scene, const struct mcr_accel *accel, const struct mcr_render_options *options,
+               const struct mcr_cell_sink *sink, struct mcr_render_stats *stats, char *error, size_t length)
+{
+    const struct mcr_film_settings *film = &scene->film;
+    struct render render = {.arena = mcr_arena_create(0)};
+    struct mcr_pass *pass = &render.pass;
+    double cpu = mcr_cpu_seconds();
+    int status = -1;
+    memset(stats, 0, sizeof *stats);
+    render.threads = scene->render.threads ? scene->render.threads : mcr_cpu_count();
+    render.start = mcr_wall_seconds();
+    pass->core = &render.core;
+    pass->pixels = (uint64_t)(film->x1 - film->x0) * (film->y1 - film->y0);
+    pass->cell = calloc(pass->pixels > PASS_CELLS ? pass->pixels : PASS_CELLS, sizeof *pass->cell);
+    pass->tick = options->progress ? tick : NULL;
+    pass->tick_data = &render;
+    render.samples_total = pass->pixels * scene->render.spp;
+    if (!render.arena || !pass->cell || prepare(&render, scene, accel, options) || batches_create(&render)) {
+        snprintf(error, length, "out of memory");
+    } else {
+        status = run_all(&render, scene, sink, stats);
+        if (status)
+            snprintf(error, length, "%s", pass->error);
+    }
+    stats->threads = render.threads;
+    stats->batch = render.core.capacity;
+    for (uint32_t i = 0; render.batch && i < render.threads; i++)
+        mcr_batch_fini(&render.batch[i]);
+    free(render.batch);
+    free(pass->cell);
+    mcr_arena_destroy(render.arena);
+    stats->wall_seconds = mcr_wall_seconds() - render.start;
+    stats->cpu_seconds = mcr_cpu_seconds() - cpu;
+    return status;
+}

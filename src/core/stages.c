@@ -1,0 +1,8 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* The table of stages of one instruction set. Compiled once per instruction set. */
+#include "core/stages.h"
+
+const struct mcr_stages MCR_ISA_NAME(mcr_stages) = {
+    MCR_ISA_NAME(mcr_stage_camera), MCR_ISA_NAME(mcr_stage_path_keys),  MCR_ISA_NAME(mcr_stage_sort),    MCR_ISA_NAME(mcr_stage_surface),
+    MCR_ISA_NAME(mcr_stage_emit),   MCR_ISA_NAME(mcr_stage_background), MCR_ISA_NAME(mcr_stage_scatter), MCR_ISA_NAME(mcr_stage_compact),
+};

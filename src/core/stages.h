@@ -1,0 +1,18 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* The stage functions under the names of the instruction set that is being compiled. What they do: struct mcr_stages. Private to the stage files. */
+#ifndef MCR_CORE_STAGES_H
+#define MCR_CORE_STAGES_H
+
+#include "core/batch.h"
+
+void MCR_ISA_NAME(mcr_stage_camera)(const struct mcr_scene *scene, const struct mcr_camera_lanes *lanes);
+void MCR_ISA_NAME(mcr_stage_path_keys)(uint64_t seed, uint32_t n, const uint64_t *pixel, const uint32_t *replicate, const uint32_t *index,
+                                       uint64_t *pixel_key, uint64_t *path_key);
+void MCR_ISA_NAME(mcr_stage_sort)(struct mcr_batch *batch);
+void MCR_ISA_NAME(mcr_stage_surface)(struct mcr_batch *batch);
+void MCR_ISA_NAME(mcr_stage_emit)(struct mcr_batch *batch, uint32_t begin, uint32_t end);
+void MCR_ISA_NAME(mcr_stage_background)(struct mcr_batch *batch);
+void MCR_ISA_NAME(mcr_stage_scatter)(struct mcr_batch *batch, uint32_t begin, uint32_t end, const double *u);
+void MCR_ISA_NAME(mcr_stage_compact)(struct mcr_batch *batch);
+
+#endif

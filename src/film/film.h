@@ -1,0 +1,74 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * The film: per-pixel sums of fixed shape and what is needed for their variance.
+ *
+ * Sums. The samples of a pixel form cells of MCR_CELL_SAMPLES consecutive ones (the last of a replicate may be shorter), added by pairs. Cells are
+ * the leaves of a tree of radix MCR_FILM_RADIX: a node is the sum of its children in order. The shape depends on the samples' numbers only, so that
+ * threads, batches and passes never change a bit, and a part that is cut at nodes can be added in later. The relative error for samples of one sign
+ * is at most (4 + 15 * levels) u: below 2e-14 for 1e8 samples.
+ *
+ * Variance. With independent numbers each sample is a unit, with correlated ones each replicate: the units' central second moment of luminance
+ * is merged pair by pair (Chan, Golub and LeVeque 1983). With fewer than two units the variance is unknown.
+ */
+#ifndef MCR_FILM_FILM_H
+#define MCR_FILM_FILM_H
+
+#include <stdint.h>
+
+#include "core/cell.h"
+
+#define MCR_FILM_RADIX 16u
+#define MCR_FILM_LEVELS 9u /* 16 * 16^8 samples: more than 2^32 */
+
+/* One node that is being added up, for all pixels: how many children it has, and the sums so far. */
+struct mcr_film_level {
+    uint32_t children;
+    uint64_t samples;
+    double *sum[3], *moment; /* pixels each; NULL until first used */
+};
+
+struct mcr_film {
+    uint32_t width, height; /* of the crop */
+    uint64_t pixels;
+    int correlated;         /* units are replicates */
+    uint32_t replicates;
+    uint64_t samples;       /* a pixel, so far */
+    uint32_t units;         /* finished samples or replicates */
+    struct mcr_film_level level[MCR_FILM_LEVELS];
+    /* correlated: */
+    uint64_t replicate_samples;
+    uint64_t unit_samples;  /* samples of the finished replicates */
+    double *replicate_sum;  /* luminance of the running replicate */
+    double *unit_mean, *unit_moment; /* over the finished replicates: mean, and sum of samples * (mean - overall mean)^2 */
+};
+
+/* NULL when memory is short. */
+struct mcr_film *mcr_film_create(uint32_t width, uint32_t height, int correlated);
+void mcr_film_destroy(struct mcr_film *film);
+
+/*
+ * Adds the next cell of every pixel: cell[pixel], each of `count` samples. Returns 0, or -1 when memory is short (nothing was added then).
+ * Cells come in the order of the samples.
+ */
+int mcr_film_add(struct mcr_film *film, const struct mcr_cell *cell, uint32_t count);
+/* The replicate is complete: its mean becomes a unit. Only for correlated films. */
+void mcr_film_end_replicate(struct mcr_film *film);
+
+/* The mean radiance of every pixel: rgb[3 * pixel]. Black where there is no sample. */
+void mcr_film_mean(const struct mcr_film *film, double *rgb);
+/* The variance of every pixel's mean luminance. Returns 0, or -1 if it is unknown (fewer than 2 units): out is untouched then. */
+int mcr_film_variance(const struct mcr_film *film, double *out);
+
+/* Figures over the whole picture. */
+struct mcr_film_figures {
+    double mean[3], luminance;         /* mean over pixels */
+    int known;                         /* whether the rest is */
+    double mean_variance;              /* of a pixel's luminance, mean over pixels: the expected MSE of luminance */
+    double standard_error;             /* of the mean luminance */
+    double relative_error;             /* root of the mean variance over the mean luminance; 0 for a black picture */
+    double sample_variance;            /* luminance variance of one sample, mean over pixels; for replicates: of the mean of one, times its samples */
+};
+/* Returns 0, or -1 when memory is short. */
+int mcr_film_figures(const struct mcr_film *film, struct mcr_film_figures *figures);
+
+#endif

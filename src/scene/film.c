@@ -1,0 +1,96 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Blocks `film { … }`: size, crop, filter, and what the command line says over them. */
+#include "scene/build.h"
+#include "scene/vector.h"
+
+static void read_filter(struct mcr_build *build, const struct mcr_settings *settings)
+{
+    static const char *const words[MCR_FILTER_COUNT] = { "box", "tent", "gaussian" };
+    struct mcr_film_settings *film = &build->scene->film;
+    const struct mcr_value *value = settings->value[FILM_FILTER];
+    struct mcr_settings arguments;
+    uint32_t filter = 0;
+    film->filter = MCR_FILTER_BOX;
+    film->filter_radius = mcr_filter_words[0].setting[FILTER_RADIUS].fallback[0];
+    if (!value)
+        return;
+    if (value->kind != MCR_VALUE_NAME && value->kind != MCR_VALUE_CALL) {
+        mcr_wrong_kind(build, value, "filter", "film", mcr_word_form(MCR_WORD_FILTER));
+        return;
+    }
+    while (filter < MCR_FILTER_COUNT && strcmp(words[filter], value->text) != 0)
+        filter++;
+    if (filter == MCR_FILTER_COUNT) {
+        mcr_unknown_word(build, value->place, "filter", value->text, "film", words, MCR_FILTER_COUNT);
+        return;
+    }
+    film->filter = filter;
+    mcr_settings_match_call(build, value, &mcr_filter_words[filter], &arguments);
+    mcr_read_number(build, &arguments, FILTER_RADIUS, &film->filter_radius);
+    if (filter == MCR_FILTER_GAUSSIAN)
+        mcr_read_number(build, &arguments, FILTER_SIGMA, &film->filter_sigma);
+}
+
+/* The place of what was wrong: the scene's setting, or none where the command line said it. */
+static void check_crop(struct mcr_build *build, struct mcr_place place, const char *option)
+{
+    struct mcr_film_settings *film = &build->scene->film;
+    uint64_t pixels;
+    if (film->x0 >= film->x1 || film->y0 >= film->y1) {
+        mcr_error(build, place, "%s is empty: expected x0 < x1 and y0 < y1", option);
+        return;
+    }
+    if (film->x1 > film->width || film->y1 > film->height) {
+        mcr_error(build, place, "%s reaches to (%u, %u), beyond the picture of %u x %u pixels", option, film->x1, film->y1, film->width,
+                  film->height);
+        return;
+    }
+    pixels = (uint64_t)(film->x1 - film->x0) * (film->y1 - film->y0);
+    if (pixels > MCR_FILM_MEMORY_LIMIT / MCR_FILM_BYTES_PER_PIXEL)
+        mcr_error(build, place, "a film of %u x %u pixels needs %llu MiB, at most 1024 MiB are allowed: render it in parts with 'crop'",
+                  film->x1 - film->x0, film->y1 - film->y0,
+                  (unsigned long long)((pixels * MCR_FILM_BYTES_PER_PIXEL + (1 << 20) - 1) >> 20));
+}
+
+void mcr_build_film(struct mcr_build *build, const struct mcr_item *block)
+{
+    static const struct mcr_item none = { .is_block = 1, .word = "film" };
+    const struct mcr_overrides *over = build->overrides;
+    struct mcr_film_settings *film = &build->scene->film;
+    struct mcr_settings settings;
+    struct mcr_place place = { 0 };
+    const char *option = "'crop'";
+    uint32_t size[2], crop[4];
+    int bad, has_crop;
+    mcr_settings_match(build, block ? block : &none, mcr_scene_block("film", NULL), 0, &settings);
+    bad = mcr_read_whole(build, &settings, FILM_SIZE, 2, size) < 0;
+    has_crop = mcr_read_whole(build, &settings, FILM_CROP, 4, crop);
+    read_filter(build, &settings);
+    if (bad || has_crop < 0)
+        return;
+    if (settings.value[FILM_CROP])
+        place = settings.value[FILM_CROP]->place;
+    if (over && over->has_size) {
+        size[0] = over->width;
+        size[1] = over->height;
+        if (size[0] < 1 || size[1] < 1 || size[0] > MCR_FILM_LIMIT || size[1] > MCR_FILM_LIMIT) {
+            mcr_error(build, place, "--size %ux%u is out of range, expected 1 to %u each", size[0], size[1], MCR_FILM_LIMIT);
+            return;
+        }
+    }
+    if (over && over->has_crop) {
+        memcpy(crop, over->crop, sizeof crop);
+        has_crop = 0;
+        place = (struct mcr_place){ 0 };
+        option = "--crop";
+    }
+    film->width = size[0];
+    film->height = size[1];
+    film->x0 = has_crop == 0 ? crop[0] : 0;
+    film->y0 = has_crop == 0 ? crop[1] : 0;
+    film->x1 = has_crop == 0 ? crop[2] : size[0];
+    film->y1 = has_crop == 0 ? crop[3] : size[1];
+    if (has_crop != 0 && settings.value[FILM_SIZE] && !(over && over->has_size))
+        place = settings.value[FILM_SIZE]->place;
+    check_crop(build, place, option);
+}

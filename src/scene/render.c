@@ -1,0 +1,181 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Blocks `render { … }`, what the command line says over them, and the sampler. */
+#include "scene/build.h"
+#include "scene/vector.h"
+
+#define REPLICATES_FROM_SPP 16u /* correlated samplers: from here on two replicates, so that the error can be estimated */
+
+static void read_roulette(struct mcr_build *build, const struct mcr_settings *settings)
+{
+    struct mcr_render_settings *render = &build->scene->render;
+    const struct mcr_value *value = settings->value[RENDER_ROULETTE];
+    struct mcr_settings arguments;
+    double from = mcr_roulette_word.setting[0].fallback[0];
+    render->roulette = 1;
+    render->roulette_from = (uint32_t)from;
+    if (!value)
+        return;
+    if (value->kind == MCR_VALUE_NAME && strcmp(value->text, "off") == 0) {
+        render->roulette = 0;
+    } else if ((value->kind == MCR_VALUE_NAME || value->kind == MCR_VALUE_CALL) && strcmp(value->text, "on") == 0) {
+        mcr_settings_match_call(build, value, &mcr_roulette_word, &arguments);
+        if (mcr_read_number(build, &arguments, 0, &from) == 0)
+            render->roulette_from = (uint32_t)from;
+    } else {
+        mcr_wrong_kind(build, value, "roulette", "render", mcr_word_form(MCR_WORD_ROULETTE));
+    }
+}
+
+/* Choices that the language has but this build has not. */
+static void check_available(struct mcr_build *build, const struct mcr_settings *settings, uint32_t index, double last, double number)
+{
+    static const char *const name[] = { [RENDER_ACCEL] = "embree", [RENDER_PRECISION] = "single" };
+    if (number > last)
+        mcr_error(build, settings->value[index]->place, "'%s %s' is not available in this build", settings->word->setting[index].name, name[index]);
+}
+
+static double number_of(struct mcr_build *build, const struct mcr_settings *settings, uint32_t index)
+{
+    double number = settings->word->setting[index].fallback[0];
+    mcr_read_number(build, settings, index, &number);
+    return number;
+}
+
+static void override(struct mcr_build *build)
+{
+    const struct mcr_overrides *over = build->overrides;
+    struct mcr_render_settings *render = &build->scene->render;
+    if (!over)
+        return;
+    if (over->has_spp)
+        render->spp = over->spp;
+    if (over->has_depth)
+        render->depth = over->depth;
+    if (over->has_seed)
+        render->seed = over->seed;
+    if (over->has_threads)
+        render->threads = over->threads;
+    if (over->has_accel)
+        render->accel = over->accel;
+    if (over->has_batch)
+        render->batch = over->batch;
+    if (over->sampler) {
+        build->sampler = mcr_parse_value(build->arena, build->diagnostics, "--sampler", over->sampler);
+        if (build->sampler)
+            build->scene->sampler_place = build->sampler->place;
+    }
+}
+
+void mcr_build_render(struct mcr_build *build, const struct mcr_item *block)
+{
+    static const struct mcr_item none = { .is_block = 1, .word = "render" };
+    struct mcr_render_settings *render = &build->scene->render;
+    struct mcr_settings settings;
+    double number;
+    mcr_settings_match(build, block ? block : &none, mcr_scene_block("render", NULL), 0, &settings);
+    render->spp = (uint32_t)number_of(build, &settings, RENDER_SPP);
+    render->depth = (uint32_t)number_of(build, &settings, RENDER_DEPTH);
+    render->seed = (uint64_t)number_of(build, &settings, RENDER_SEED);
+    render->threads = (uint32_t)number_of(build, &settings, RENDER_THREADS);
+    render->batch = (uint32_t)number_of(build, &settings, RENDER_BATCH);
+    number = number_of(build, &settings, RENDER_ACCEL);
+    check_available(build, &settings, RENDER_ACCEL, MCR_ACCEL_BVH, number);
+    render->accel = (uint32_t)number;
+    number = number_of(build, &settings, RENDER_PRECISION);
+    check_available(build, &settings, RENDER_PRECISION, MCR_PRECISION_DOUBLE, number);
+    render->precision = MCR_PRECISION_DOUBLE;
+    render->mis_power = number_of(build, &settings, RENDER_MIS) == 1;
+    mcr_read_colour(build, &settings, RENDER_BACKGROUND, render->background);
+    read_roulette(build, &settings);
+    build->replicates = (uint32_t)number_of(build, &settings, RENDER_REPLICATES);
+    if (settings.value[RENDER_REPLICATES])
+        build->replicates_place = settings.value[RENDER_REPLICATES]->place;
+    build->sampler = settings.value[RENDER_SAMPLER];
+    if (build->sampler)
+        build->scene->sampler_place = build->sampler->place;
+    override(build);
+    if (build->replicates > render->spp) {
+        mcr_error(build, build->replicates_place, "%u replicates need at least %u samples per pixel, spp is %u", build->replicates,
+                  build->replicates, render->spp);
+        build->replicates = 0;
+    }
+}
+
+/* The node whose technique aims at emitters, or NULL. */
+static const struct mcr_node *aims_at_emitters(const struct mcr_node *node)
+{
+    for (uint32_t i = 0; i < node->child_count; i++) {
+        const struct mcr_node *found = node->child[i] ? aims_at_emitters(node->child[i]) : NULL;
+        if (found)
+            return found;
+    }
+    for (uint32_t i = 0; i < node->technique_count; i++)
+        if (node->technique[i].kind == MCR_TECHNIQUE_EMITTER || (node->technique[i].covers & MCR_COVERS_EMITTERS))
+            return node;
+    return NULL;
+}
+
+static int covers(const struct mcr_node *node, uint32_t what)
+{
+    uint32_t all = 0;
+    for (uint32_t i = 0; i < node->technique_count; i++)
+        all |= node->technique[i].covers;
+    return (all & what) != 0;
+}
+
+/* Judges what aims at emitters; -1 after an error. */
+static int check_lights(struct mcr_build *build, const struct mcr_sampler *sampler)
+{
+    const struct mcr_node *light = sampler->directions ? aims_at_emitters(sampler->directions) : NULL;
+    if (!light)
+        return 0;
+    if (build->planes_emit) {
+        mcr_error(build, light->place, "an infinite plane cannot be sampled as a light");
+        mcr_report(build->diagnostics, MCR_NOTE, build->plane_place, "this plane emits: use a quad or a disk, or a sampler without '%s'",
+                   light->descriptor->name);
+        return -1;
+    }
+    if (!build->scene->has_lights && !covers(sampler->directions, MCR_COVERS_REFLECTION | MCR_COVERS_TRANSMISSION) &&
+        mcr_diagnostics_errors(build->diagnostics) == 0)
+        mcr_report(build->diagnostics, MCR_WARNING, light->place, "the scene has no light that '%s' could sample: only emission will be seen",
+                   light->descriptor->name);
+    return 0;
+}
+
+static uint32_t planned(const struct mcr_render_settings *render)
+{
+    return render->spp / render->replicates + (render->spp % render->replicates != 0);
+}
+
+/* Makes the sampler for as many samples as a replicate has; -1 after an error. */
+static int create_sampler(struct mcr_build *build, int has_lights)
+{
+    struct mcr_scene *scene = build->scene;
+    mcr_sampler_destroy(scene->sampler);
+    scene->sampler = mcr_sampler_create(build->arena, build->diagnostics, build->registry, build->sampler, planned(&scene->render), has_lights);
+    return scene->sampler ? 0 : -1;
+}
+
+void mcr_build_sampler(struct mcr_build *build)
+{
+    struct mcr_scene *scene = build->scene;
+    struct mcr_render_settings *render = &scene->render;
+    /* With a plane as the only emitter, `light` is to be refused for that reason and not for the want of emitters. */
+    int lights = scene->has_lights, first_lights = lights || build->planes_emit;
+    if (build->overrides && build->overrides->sampler && !build->sampler)
+        return;
+    if (!build->sampler) {
+        const char *text = lights && !build->planes_emit ? "mixture(cosine 1, light 1)" : "cosine";
+        build->sampler = mcr_parse_value(build->arena, build->diagnostics, "default sampler", text);
+    }
+    if (!build->sampler || mcr_value_resolve(build->sampler)->kind == MCR_VALUE_ERROR)
+        return;
+    render->replicates = build->replicates ? build->replicates : 1;
+    if (create_sampler(build, first_lights) != 0 || check_lights(build, scene->sampler) != 0)
+        return;
+    if (!build->replicates && scene->sampler->correlated && render->spp >= REPLICATES_FROM_SPP)
+        render->replicates = 2; /* sources lay out their samples by replicate: they are made anew for half as many */
+    else if (first_lights == lights)
+        return;
+    create_sampler(build, lights);
+}

@@ -1,0 +1,143 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * The immutable scene: what the accelerators and the core work on.
+ *
+ * Render space: the axes of the world, the origin at the camera's position, lengths multiplied by `scale`, a power of two that brings
+ * the largest coordinate of the scene into [0.5, 1). Positions are subtracted from the camera's before anything else is computed with
+ * them, so that a far origin costs no accuracy. Everything below is in render space unless it says world.
+ */
+#ifndef MCR_SCENE_SCENE_H
+#define MCR_SCENE_SCENE_H
+
+#include "base/arena.h"
+#include "base/diag.h"
+#include "language/tree.h"
+#include "plugin/node.h"
+#include "plugin/registry.h"
+
+enum mcr_shape_kind {
+    MCR_SHAPE_PLANE,         /* infinite: c a point, n */
+    MCR_SHAPE_SPHERE,        /* c, radius; front outside */
+    MCR_SHAPE_ELLIPSOID,     /* c, half axes e[0..2] (any three independent vectors: the image of the unit sphere); front outside */
+    MCR_SHAPE_PARALLELOGRAM, /* corner c, edges e[0], e[1]; n along e[0] x e[1] (reversed under a mirroring transform) */
+    MCR_SHAPE_DISK,          /* centre c, half axes e[0], e[1] (conjugate, need not be orthogonal); n */
+    MCR_SHAPE_BOX            /* corner c, edges e[0..2]; 6 primitives: faces c + [0,1]e_j + [0,1]e_k at 0 and then at 1 of axis 0, 1, 2; front outside */
+};
+
+struct mcr_shape {
+    uint32_t kind;
+    uint32_t primitive; /* its first primitive's number */
+    uint32_t material;
+    double c[3];
+    double e[3][3];
+    double n[3];        /* unit, front; plane, parallelogram, disk */
+    double radius;
+    struct mcr_place place;
+};
+
+/* All triangles, of meshes and single ones. Primitive number of triangle i: first_primitive + i. */
+struct mcr_triangles {
+    uint32_t count, first_primitive;
+    uint32_t vertex_count, normal_count, uv_count;
+    double *x, *y, *z;           /* vertex_count */
+    uint32_t (*vertex)[3];       /* count; counter-clockwise seen from the front */
+    uint32_t *material;          /* count */
+    double *nx, *ny, *nz;        /* normal_count, unit */
+    uint32_t (*normal)[3];       /* count, or NULL if no mesh has normals; UINT32_MAX: this triangle has none */
+    double *u, *v;               /* uv_count */
+    uint32_t (*uv)[3];           /* count, or NULL */
+};
+
+struct mcr_scene_material {
+    const char *name;
+    struct mcr_place place;
+    struct mcr_node *node;                       /* descriptor is a struct mcr_material_plugin */
+    struct mcr_material_traits traits;
+};
+
+enum mcr_camera_kind { MCR_CAMERA_PERSPECTIVE, MCR_CAMERA_ORTHOGRAPHIC, MCR_CAMERA_THIN_LENS };
+
+/*
+ * Perspective: a ray through the film point (s, t), s to the right and t up, each 0 at the picture's centre and t = +-1 at the upper and lower
+ * edge of the *full* picture, leaves the origin along forward + s * half_height * right + t * half_height * up.
+ * Orthographic: it starts at s * half_height * right + t * half_height * up, along forward.
+ * Thin lens: as perspective, through the lens point; sharp at focus_distance along forward.
+ */
+struct mcr_camera {
+    uint32_t kind;
+    double right[3], up[3], forward[3]; /* orthonormal */
+    double half_height;                 /* tan(fov/2), or half the height of the orthographic view in render space */
+    double lens_radius;                 /* render space; 0: a pinhole */
+    double focus_distance;              /* render space */
+    double world[3];                    /* its position in the world */
+};
+
+enum mcr_filter_kind { MCR_FILTER_BOX, MCR_FILTER_TENT, MCR_FILTER_GAUSSIAN };
+
+struct mcr_film_settings {
+    uint32_t width, height;                  /* the full picture */
+    uint32_t x0, y0, x1, y1;                 /* the crop that is rendered: x0 <= x < x1, from the top left */
+    uint32_t filter;
+    double filter_radius;                    /* pixels; box 0.5, tent 1, gaussian (circular cut) 1.5 */
+    double filter_sigma;                     /* gaussian, pixels */
+};
+
+enum mcr_precision { MCR_PRECISION_DOUBLE };
+enum mcr_accel_kind { MCR_ACCEL_AUTO, MCR_ACCEL_LIST, MCR_ACCEL_BVH };
+
+struct mcr_render_settings {
+    uint32_t spp;           /* >= 1 */
+    uint32_t depth;         /* scattering events; 0: emission only */
+    uint64_t seed;
+    uint32_t threads;       /* 0: all */
+    uint32_t replicates;    /* resolved: >= 1, <= spp; 1 for independent numbers */
+    uint32_t accel;
+    uint32_t precision;
+    uint32_t batch;         /* paths in a batch, 0: the default */
+    int roulette;           /* on or off */
+    uint32_t roulette_from; /* the first bounce (0-based scattering event) at which it may end a path */
+    int mis_power;          /* techniques are combined by the power heuristic instead of the balance heuristic */
+    double background[3];
+};
+
+/* What the arena of a tree and its scene should be limited to: 16 GiB, far more than the text of MCR_SOURCE_LIMIT can ask for. */
+#define MCR_SCENE_MEMORY_LIMIT ((size_t)16 << 30)
+
+struct mcr_scene {
+    struct mcr_arena *arena;
+    const char *path;
+    uint64_t hash;
+    double scale;                /* render length = world length * scale */
+    struct mcr_camera camera;
+    struct mcr_film_settings film;
+    struct mcr_render_settings render;
+    struct mcr_sampler *sampler;
+    uint32_t material_count;
+    struct mcr_scene_material *material;
+    uint32_t shape_count;
+    struct mcr_shape *shape;
+    struct mcr_triangles triangles;
+    uint32_t primitive_count;    /* of shapes and triangles together, at most 2^31 - 1 */
+    uint32_t dropped;            /* degenerate triangles of meshes, left out */
+    int has_lights;              /* bounded shapes emit */
+    struct mcr_place sampler_place;
+};
+
+/* What the command line says over the scene. Members are in force where their `has_` is set or their pointer is not NULL. */
+struct mcr_overrides {
+    int has_spp, has_depth, has_seed, has_threads, has_size, has_crop, has_accel, has_batch;
+    uint32_t spp, depth, threads, width, height, crop[4], accel, batch;
+    uint64_t seed;
+    const char *sampler; /* an expression */
+};
+
+/*
+ * Builds the scene of a tree. Everything that is wrong is recorded, as much as can be found in one run; NULL after an error.
+ * The scene lives in `arena` (the tree's) and ends with mcr_scene_destroy.
+ */
+struct mcr_scene *mcr_scene_build(struct mcr_arena *arena, struct mcr_diagnostics *diagnostics, struct mcr_registry *registry,
+                                  const struct mcr_item *root, const struct mcr_overrides *overrides);
+/* Destroys plugin instances; the arena stays. NULL is allowed. */
+void mcr_scene_destroy(struct mcr_scene *scene);
+
+#endif

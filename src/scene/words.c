@@ -1,0 +1,211 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+#include "scene/words.h"
+
+#include <string.h>
+
+#define COUNT(table) ((uint32_t)(sizeof(table) / sizeof(table)[0]))
+
+/* A row: word, type, flags, unit, minimum, maximum, defaults of the three components, summary. */
+#define ROW(word, what, flag, unit_, min_, max_, f0, f1, f2, text)                                                                 \
+    { .size = sizeof(struct mcr_parameter), .type = what, .flags = flag, .name = word, .unit = unit_, .summary = text,             \
+      .fallback = { f0, f1, f2 }, .min = min_, .max = max_ }
+#define CHOICE(word, words, text)                                                                                                  \
+    { .size = sizeof(struct mcr_parameter), .type = MCR_TYPE_CHOICE, .name = word, .unit = "", .choices = words, .summary = text }
+
+#define REQUIRED MCR_PARAMETER_REQUIRED
+#define ABOVE MCR_PARAMETER_ABOVE_MIN
+#define BELOW MCR_PARAMETER_BELOW_MAX
+#define FAR MCR_EXTENT_LIMIT
+
+#define POINT(word, flag, text) ROW(word, MCR_WORD_POINT, flag, "", -FAR, FAR, 0, 0, 0, text)
+#define VECTOR(word, flag, text) ROW(word, MCR_WORD_VECTOR, flag, "", -FAR, FAR, 0, 0, 0, text)
+#define LENGTH(word, flag, text) ROW(word, MCR_TYPE_NUMBER, (flag) | ABOVE, "", 0, FAR, 0, 0, 0, text)
+#define WORD(word, type, flag, text) ROW(word, type, flag, "", -FAR, FAR, 0, 0, 0, text)
+
+#define FRAME                                                                                                                      \
+    [CAMERA_FROM] = POINT("from", REQUIRED, "Position."), [CAMERA_TO] = POINT("to", REQUIRED, "Point in the picture's centre."),   \
+    [CAMERA_UP] = ROW("up", MCR_WORD_VECTOR, 0, "", -FAR, FAR, 0, 1, 0, "Direction that is up in the picture.")
+#define PERSPECTIVE                                                                                                                \
+    FRAME,                                                                                                                         \
+    [CAMERA_FOV] = ROW("fov", MCR_TYPE_NUMBER, ABOVE | BELOW, "degrees", 0, 180, 0, 0, 0,                                          \
+                       "Vertical field of view; or give focal and film_height."),                                                 \
+    [CAMERA_FOCAL] = LENGTH("focal", 0, "Focal length, in the unit of film_height."),                                             \
+    [CAMERA_FILM_HEIGHT] = LENGTH("film_height", 0, "Height of the film, in the unit of focal.")
+
+static const struct mcr_parameter perspective[] = { PERSPECTIVE };
+static const struct mcr_parameter orthographic[] = {
+    FRAME,
+    [ORTHOGRAPHIC_HEIGHT] = LENGTH("height", REQUIRED, "Height of what is seen, in world units."),
+};
+static const struct mcr_parameter thinlens[] = {
+    PERSPECTIVE,
+    [CAMERA_LENS_RADIUS] = ROW("lens_radius", MCR_TYPE_NUMBER, REQUIRED, "", 0, FAR, 0, 0, 0, "Radius of the lens, in world units."),
+    [CAMERA_FOCUS_DISTANCE] = LENGTH("focus_distance", 0, "Distance of the sharp plane along the view; by default it goes through `to`."),
+};
+
+static const struct mcr_parameter film[] = {
+    [FILM_SIZE] = ROW("size", MCR_WORD_PAIR, 0, "pixels", 1, MCR_FILM_LIMIT, 512, 512, 0, "Width and height of the picture."),
+    [FILM_CROP] = ROW("crop", MCR_WORD_RECTANGLE, 0, "pixels", 0, MCR_FILM_LIMIT, 0, 0, 0,
+                      "The part to render, from the top left: x0 <= x < x1, y0 <= y < y1; by default all."),
+    [FILM_FILTER] = WORD("filter", MCR_WORD_FILTER, 0, "Reconstruction filter; box by default."),
+};
+static const struct mcr_parameter box_filter[] = {
+    [FILTER_RADIUS] = ROW("radius", MCR_TYPE_NUMBER, ABOVE, "pixels", 0, 64, 0.5, 0, 0, "Half the width of the box."),
+};
+static const struct mcr_parameter tent_filter[] = {
+    [FILTER_RADIUS] = ROW("radius", MCR_TYPE_NUMBER, ABOVE, "pixels", 0, 64, 1, 0, 0, "Where the tent reaches 0."),
+};
+static const struct mcr_parameter gaussian_filter[] = {
+    [FILTER_RADIUS] = ROW("radius", MCR_TYPE_NUMBER, ABOVE, "pixels", 0, 64, 1.5, 0, 0, "Where the filter is cut."),
+    [FILTER_SIGMA] = ROW("sigma", MCR_TYPE_NUMBER, ABOVE, "pixels", 0, 64, 0.5, 0, 0, "Standard deviation."),
+};
+static const struct mcr_parameter roulette[] = {
+    ROW("from", MCR_TYPE_INTEGER, 0, "", 0, 2147483646, 3, 0, 0, "The first scattering event, counted from 0, at which it may end a path."),
+};
+
+static const struct mcr_parameter render[] = {
+    [RENDER_SAMPLER] = WORD("sampler", MCR_WORD_SAMPLER, 0,
+                            "How directions and numbers are drawn; by default mixture(cosine 1, light 1) where there is light to sample, else cosine."),
+    [RENDER_SPP] = ROW("spp", MCR_TYPE_INTEGER, 0, "", 1, 2147483648.0, 16, 0, 0, "Samples per pixel."),
+    [RENDER_DEPTH] = ROW("depth", MCR_TYPE_INTEGER, 0, "", 0, 2147483646, 50, 0, 0, "Scattering events of a path at most; 0 shows emission only."),
+    [RENDER_SEED] = ROW("seed", MCR_TYPE_INTEGER, 0, "", 0, 9007199254740992.0, 0, 0, 0, "Another seed gives other noise."),
+    [RENDER_THREADS] = ROW("threads", MCR_TYPE_INTEGER, 0, "", 0, 1024, 0, 0, 0, "Threads; 0 takes all processors."),
+    [RENDER_REPLICATES] = ROW("replicates", MCR_TYPE_INTEGER, 0, "", 1, 4096, 0, 0, 0,
+                              "Independent repetitions for the error estimate; by default 1, with correlated numbers 2 from 16 spp on."),
+    [RENDER_ROULETTE] = WORD("roulette", MCR_WORD_ROULETTE, 0, "Ends dim paths early without bias; on(from=3) by default."),
+    [RENDER_BACKGROUND] = ROW("background", MCR_TYPE_COLOUR, 0, "W/(sr m^2)", 0, FAR, 0, 0, 0, "Radiance from where there is nothing."),
+    [RENDER_ACCEL] = CHOICE("accel", "auto|list|bvh|embree", "How the closest surface is found."),
+    [RENDER_PRECISION] = CHOICE("precision", "double|single", "Precision of the accelerator."),
+    [RENDER_MIS] = CHOICE("mis", "balance|power", "Heuristic by which techniques are combined."),
+    [RENDER_BATCH] = ROW("batch", MCR_TYPE_INTEGER, 0, "", 0, 65536, 0, 0, 0, "Paths in a batch; 0 chooses."),
+};
+
+#define SHAPE                                                                                                                      \
+    [SHAPE_MATERIAL] = WORD("material", MCR_WORD_MATERIAL, REQUIRED, "Name of a material."),                                       \
+    [SHAPE_TRANSFORM] = WORD("transform", MCR_WORD_TRANSFORM, 0, "Block of steps that move this shape.")
+
+static const struct mcr_parameter plane[] = {
+    SHAPE,
+    [PLANE_POINT] = POINT("point", REQUIRED, "Any point of the plane."),
+    [PLANE_NORMAL] = VECTOR("normal", REQUIRED, "Direction of its front."),
+};
+static const struct mcr_parameter sphere[] = {
+    SHAPE,
+    [SPHERE_CENTER] = POINT("center", REQUIRED, "Centre."),
+    [SPHERE_RADIUS] = LENGTH("radius", REQUIRED, "Radius."),
+};
+static const struct mcr_parameter quad[] = {
+    SHAPE,
+    [QUAD_CORNER] = POINT("corner", 0, "A corner, with u and v."),
+    [QUAD_U] = VECTOR("u", 0, "Edge from the corner; the front is where u x v points."),
+    [QUAD_V] = VECTOR("v", 0, "The other edge from the corner."),
+    [QUAD_CORNERS] = WORD("corners", MCR_WORD_POINTS4, 0, "Or four corners, counter-clockwise seen from the front."),
+};
+static const struct mcr_parameter disk[] = {
+    SHAPE,
+    [DISK_CENTER] = POINT("center", REQUIRED, "Centre."),
+    [DISK_NORMAL] = VECTOR("normal", REQUIRED, "Direction of its front."),
+    [DISK_RADIUS] = LENGTH("radius", REQUIRED, "Radius."),
+};
+static const struct mcr_parameter box[] = {
+    SHAPE,
+    [BOX_CORNER] = POINT("corner", 0, "Corner with the smallest coordinates; (0, 0, 0) by default."),
+    [BOX_SIZE] = ROW("size", MCR_WORD_VECTOR, ABOVE, "", 0, FAR, 0, 0, 0, "Lengths along the axes."),
+    [BOX_MIN] = POINT("min", 0, "Or the smallest coordinates, with max."),
+    [BOX_MAX] = POINT("max", 0, "The largest coordinates."),
+};
+static const struct mcr_parameter triangle[] = {
+    SHAPE,
+    [TRIANGLE_A] = POINT("a", REQUIRED, "First corner; counter-clockwise seen from the front."),
+    [TRIANGLE_B] = POINT("b", REQUIRED, "Second corner."),
+    [TRIANGLE_C] = POINT("c", REQUIRED, "Third corner."),
+    [TRIANGLE_NORMALS] = WORD("normals", MCR_WORD_POINTS3, 0, "Shading normals at the corners."),
+    [TRIANGLE_UV] = WORD("uv", MCR_WORD_UVS3, 0, "Surface coordinates at the corners."),
+};
+static const struct mcr_parameter mesh[] = {
+    SHAPE,
+    [MESH_VERTICES] = WORD("vertices", MCR_WORD_POINT_LIST, REQUIRED, "Points, numbered from 0."),
+    [MESH_FACES] = ROW("faces", MCR_WORD_FACE_LIST, REQUIRED, "", 0, 4294967294.0, 0, 0, 0,
+                       "Triangles and quadrilaterals by vertex numbers, counter-clockwise seen from the front."),
+    [MESH_NORMALS] = WORD("normals", MCR_WORD_POINT_LIST, 0, "Shading normals, one a vertex."),
+    [MESH_UV] = WORD("uv", MCR_WORD_UV_LIST, 0, "Surface coordinates, one pair a vertex."),
+};
+static const struct mcr_parameter group[] = {
+    WORD("transform", MCR_WORD_TRANSFORM, 0, "Block of steps that move all that is in the group."),
+};
+static const struct mcr_parameter transform[] = {
+    [STEP_TRANSLATE] = VECTOR("translate", 0, "Moves by (x, y, z)."),
+    [STEP_ROTATE] = WORD("rotate", MCR_WORD_ROTATION, 0,
+                         "Turns about an axis through the origin by degrees: about y, x' = x cos + z sin, z' = -x sin + z cos."),
+    [STEP_SCALE] = WORD("scale", MCR_WORD_SCALE, 0, "Scales from the origin, by one factor or three."),
+    [STEP_MATRIX] = WORD("matrix", MCR_WORD_MATRIX, 0, "Affine map of column vectors, row after row; a fourth row must be 0, 0, 0, 1."),
+    [STEP_LOOKAT] = WORD("lookat", MCR_WORD_LOOKAT, 0, "Puts the origin at `from`, turns +z toward `to` and +y toward `up`."),
+};
+
+#define BLOCK(word, kind, role, table, text) { word, kind, role, COUNT(table), table, text }
+
+const struct mcr_block_word mcr_scene_blocks[] = {
+    BLOCK("camera", "perspective", MCR_BLOCK_CAMERA, perspective, "A pinhole camera."),
+    BLOCK("camera", "orthographic", MCR_BLOCK_CAMERA, orthographic, "Parallel rays."),
+    BLOCK("camera", "thinlens", MCR_BLOCK_CAMERA, thinlens, "A camera with depth of field."),
+    BLOCK("film", NULL, MCR_BLOCK_FILM, film, "The picture."),
+    BLOCK("render", NULL, MCR_BLOCK_RENDER, render, "How it is computed."),
+    { "material", NULL, MCR_BLOCK_MATERIAL, 0, NULL, "A named material; its kind is a plugin, whose parameters are its settings." },
+    BLOCK("plane", NULL, MCR_BLOCK_SHAPE, plane, "An infinite plane."),
+    BLOCK("sphere", NULL, MCR_BLOCK_SHAPE, sphere, "A sphere; its front is outside."),
+    BLOCK("quad", NULL, MCR_BLOCK_SHAPE, quad, "A parallelogram, or any flat convex quadrilateral."),
+    BLOCK("disk", NULL, MCR_BLOCK_SHAPE, disk, "A flat disk."),
+    BLOCK("box", NULL, MCR_BLOCK_SHAPE, box, "A box along the axes; its front is outside."),
+    BLOCK("triangle", NULL, MCR_BLOCK_SHAPE, triangle, "One triangle."),
+    BLOCK("mesh", NULL, MCR_BLOCK_SHAPE, mesh, "Triangles and quadrilaterals that share vertices."),
+    BLOCK("group", NULL, MCR_BLOCK_GROUP, group, "Shapes and groups that are moved together."),
+    BLOCK("transform", NULL, MCR_BLOCK_TRANSFORM, transform, "Steps, applied to points in the order of the text."),
+};
+const uint32_t mcr_scene_block_count = COUNT(mcr_scene_blocks);
+
+const struct mcr_block_word mcr_filter_words[MCR_FILTER_COUNT] = {
+    BLOCK("box", NULL, MCR_BLOCK_FILM, box_filter, "Constant."),
+    BLOCK("tent", NULL, MCR_BLOCK_FILM, tent_filter, "Falls off linearly in x and y."),
+    BLOCK("gaussian", NULL, MCR_BLOCK_FILM, gaussian_filter, "A Gaussian, cut off in a circle."),
+};
+const struct mcr_block_word mcr_roulette_word = BLOCK("on", NULL, MCR_BLOCK_RENDER, roulette, "Russian roulette.");
+
+const struct mcr_block_word *mcr_scene_block(const char *word, const char *kind)
+{
+    for (uint32_t i = 0; i < mcr_scene_block_count; i++) {
+        const struct mcr_block_word *row = &mcr_scene_blocks[i];
+        if (strcmp(row->word, word) == 0 && (!row->kind || (kind && strcmp(row->kind, kind) == 0)))
+            return row;
+    }
+    return NULL;
+}
+
+const char *mcr_word_form(uint32_t type)
+{
+    static const char *const form[] = {
+        [MCR_WORD_POINT] = "3 numbers (x, y, z)",
+        [MCR_WORD_VECTOR] = "3 numbers (x, y, z)",
+        [MCR_WORD_PAIR] = "2 whole numbers (width, height)",
+        [MCR_WORD_RECTANGLE] = "4 whole numbers (x0, y0, x1, y1)",
+        [MCR_WORD_SCALE] = "a number or 3 numbers (x, y, z)",
+        [MCR_WORD_ROTATION] = "4 numbers (x, y, z, degrees)",
+        [MCR_WORD_MATRIX] = "12 or 16 numbers, row after row",
+        [MCR_WORD_LOOKAT] = "3 points (from, to, up)",
+        [MCR_WORD_POINTS3] = "3 tuples (x, y, z)",
+        [MCR_WORD_POINTS4] = "4 points (x, y, z)",
+        [MCR_WORD_UVS3] = "3 pairs (u, v)",
+        [MCR_WORD_POINT_LIST] = "a tuple of tuples (x, y, z)",
+        [MCR_WORD_UV_LIST] = "a tuple of pairs (u, v)",
+        [MCR_WORD_FACE_LIST] = "a tuple of faces (i, j, k) or (i, j, k, l)",
+        [MCR_WORD_MATERIAL] = "the name of a material",
+        [MCR_WORD_SAMPLER] = "a sampler such as cosine or mixture(cosine 1, light 1)",
+        [MCR_WORD_FILTER] = "box, tent or gaussian",
+        [MCR_WORD_ROULETTE] = "on, off or on(from=N)",
+        [MCR_WORD_TRANSFORM] = "a block transform { ... }",
+        [MCR_TYPE_NUMBER] = "a number",
+        [MCR_TYPE_INTEGER] = "a whole number",
+        [MCR_TYPE_COLOUR] = "a colour",
+        [MCR_TYPE_CHOICE] = "a word",
+    };
+    return type < sizeof form / sizeof form[0] && form[type] ? form[type] : "a value";
+}
