@@ -33,6 +33,23 @@ static void cut_paths(struct cutter *c, struct mcr_paths *paths, uint32_t lanes)
     paths->slot = cut(c, lanes, sizeof(uint32_t));
 }
 
+/* Arrays for combining techniques. */
+static void cut_light(struct cutter *c, struct mcr_light_lanes *l, uint32_t lanes)
+{
+    double **array[] = {&l->own, &l->others, &l->weight, &l->qx, &l->qy, &l->qz, &l->wx,  &l->wy,   &l->wz, &l->distance, &l->density, &l->sum,
+                        &l->other, &l->fr,  &l->fg,     &l->fb, &l->ox, &l->oy, &l->oz,  &l->dx,   &l->dy, &l->dz,       &l->far,     &l->seen,
+                        &l->px,  &l->py,    &l->pz,     &l->nx, &l->ny, &l->nz, &l->tx,  &l->ty,   &l->tz, &l->side,     &l->lr,      &l->lg,
+                        &l->lb};
+    for (size_t i = 0; i < sizeof array / sizeof *array; i++)
+        *array[i] = cut(c, lanes, sizeof(double));
+    l->emitter = cut(c, lanes, sizeof *l->emitter);
+    l->primitive = cut(c, lanes, sizeof *l->primitive);
+    l->hit = cut(c, lanes, sizeof *l->hit);
+    l->lane = cut(c, lanes, sizeof *l->lane);
+    l->material = cut(c, lanes, sizeof *l->material);
+    l->of = cut(c, lanes, sizeof *l->of);
+}
+
 static void cut_all(struct cutter *c, struct mcr_batch *b)
 {
     const struct mcr_core *core = b->core;
@@ -60,6 +77,7 @@ static void cut_all(struct cutter *c, struct mcr_batch *b)
     b->zone_begin = cut(c, 2 * (size_t)groups + 1, sizeof *b->zone_begin);
     for (uint32_t k = 0; k < MCR_NUMBERS_MAX; k++)
         b->number[k] = cut(c, b->lanes, sizeof(double));
+    b->roulette = cut(c, b->lanes, sizeof(double));
     b->lane_input = cut(c, (size_t)core->channels * b->lanes, sizeof(double));
     b->channel = cut(c, core->channels, sizeof *b->channel);
     b->stride = cut(c, core->channels, sizeof *b->stride);
@@ -71,6 +89,8 @@ static void cut_all(struct cutter *c, struct mcr_batch *b)
     b->camera_y = cut(c, rays, sizeof(double));
     b->camera_pixel = cut(c, rays, sizeof *b->camera_pixel);
     b->camera_replicate = cut(c, rays, sizeof *b->camera_replicate);
+    if (core->combines)
+        cut_light(c, &b->light, b->lanes);
     b->scratch = cut(c, core->scratch_bytes, 1);
 }
 

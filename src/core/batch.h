@@ -15,6 +15,14 @@
 #include "core/core.h"
 #include "core/emitters.h"
 
+/*
+ * A ray starts off its surface, on the side it leaves to, by MCR_OFFSET max(|p|, |o|, |c|, R): p the point, o the origin of the ray that found it,
+ * c and R the shape's centre and radius. The point is off its surface along the normal by at most about 4 u of that maximum after the projection in
+ * the surface stage (3 for the dot product and its difference, 1 for the subtraction); the kernels' numerators n.(c - o) err by 4 u of it, and the
+ * sphere's |f|^2 - R^2 by 4 u R^2, which is 2 u R of distance. 16 u is twice their sum.
+ */
+#define MCR_OFFSET (16 * 0x1p-53)
+
 #define MCR_NUMBERS_MAX 16u /* dimensions of a sampler's nodes at one bounce */
 #define MCR_JOB_SLOTS 4096u /* samples in flight for one job: cells of up to MCR_CELL_SAMPLES */
 #define MCR_JOBS 8u /* jobs that a batch may have in flight: more than one, so that the last paths of a job do not keep lanes empty */
@@ -74,6 +82,7 @@ struct mcr_core {
     uint32_t channels;              /* most of any group */
     uint32_t dimensions;            /* of the sampler's techniques, one bounce */
     uint32_t continuing;            /* the sampler's technique that continues paths */
+    int combines;                   /* it has more than one technique */
     int background;                 /* it is not black */
     uint64_t scratch_bytes;         /* for all nested operations of one thread */
     int needs_samples;              /* a number source other than `independent` is there */
@@ -103,6 +112,24 @@ struct mcr_job {
     int busy;
 };
 
+/* For src/core/light.c: arrays of one lane each, there only when the sampler has more than one technique. Lanes are those of points. */
+struct mcr_light_lanes {
+    /* what the continuing technique's find at the next hit is weighted with */
+    double *own, *others;          /* h of its density, and the sum of h over the other direction techniques, for its direction */
+    double *weight;                /* by ray: the weight of what it finds */
+    /* a look-up by another technique */
+    int32_t *emitter;
+    double *qx, *qy, *qz, *wx, *wy, *wz, *distance, *density, *sum, *other;
+    double *fr, *fg, *fb;
+    int64_t *primitive;
+    double *ox, *oy, *oz, *dx, *dy, *dz, *far, *seen; /* rays of the look-ups, compact */
+    int64_t *hit;
+    uint32_t *lane;
+    /* points on emitters, compact, of one group */
+    double *px, *py, *pz, *nx, *ny, *nz, *tx, *ty, *tz, *side, *lr, *lg, *lb;
+    uint32_t *material, *of;
+};
+
 struct mcr_batch {
     struct mcr_core *core;
     uint32_t lanes;                 /* room in the arrays of states and points */
@@ -121,10 +148,11 @@ struct mcr_batch {
     uint32_t miss_count;
     uint32_t *zone_count, *zone_begin; /* 2 * groups + 1 each: those that scatter, those that end, misses */
     uint32_t *zone;                 /* ray -> zone */
-    double *number[MCR_NUMBERS_MAX];
+    double *number[MCR_NUMBERS_MAX], *roulette;
     double *wx, *wy, *wz, *density; /* drawn directions */
     double *fr, *fg, *fb;           /* f * cos */
     double *alive;                  /* 1 or 0 */
+    struct mcr_light_lanes light;
     double *lane_input;             /* channels * capacity: inputs that vary from lane to lane */
     const double **channel;         /* the pointers handed to plugins */
     uint32_t *stride;
@@ -180,8 +208,8 @@ extern const struct mcr_stages mcr_stages_isa0, mcr_stages_isa1, mcr_stages_isa2
 int mcr_batch_init(struct mcr_batch *batch, struct mcr_core *core);
 void mcr_batch_fini(struct mcr_batch *batch);
 
-/* groups.c: inputs of points begin .. end-1 of a group, for a plugin's operation. */
-struct mcr_inputs mcr_group_inputs(struct mcr_batch *batch, const struct mcr_group *group, uint32_t begin, uint32_t end);
+/* groups.c: inputs of the points begin .. end-1 of a group, whose materials are material[begin .. end-1], for a plugin's operation. */
+struct mcr_inputs mcr_group_inputs(struct mcr_batch *batch, const struct mcr_group *group, const uint32_t *material, uint32_t begin, uint32_t end);
 struct mcr_points mcr_batch_points(const struct mcr_batch *batch, uint32_t begin, uint32_t end);
 
 #endif

@@ -1,16 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/*
- * Rays for the points that live. A ray starts off its surface, on the side it leaves to, by OFFSET u max(|p|, |o|, |c|, R).
- *
- * OFFSET: the point is off its surface along the normal by at most about 4 u of that maximum after the projection in the surface stage (3 for the
- * dot product and its difference, 1 for the subtraction); the kernels' numerators n.(c - o) err by 4 u of it, and the sphere's |f|^2 - R^2 by
- * 4 u R^2, which is 2 u R of distance. 16 u is twice their sum.
- *
- * Stage file, compiled once per instruction set.
- */
+/* Rays for the points that live, each starting off its surface (MCR_OFFSET). Stage file, compiled once per instruction set. */
 #include "core/stages.h"
-
-#define OFFSET (16 * 0x1p-53)
 
 void MCR_ISA_NAME(mcr_stage_compact)(struct mcr_batch *batch)
 {
@@ -30,7 +20,7 @@ void MCR_ISA_NAME(mcr_stage_compact)(struct mcr_batch *batch)
         uint32_t k = source[j];
         double dx = batch->wx[k], dy = batch->wy[k], dz = batch->wz[k];
         double gx = at->gx[k], gy = at->gy[k], gz = at->gz[k];
-        double off = OFFSET * at->reach[k];
+        double off = MCR_OFFSET * at->reach[k];
         off = gx * dx + gy * dy + gz * dz < 0 ? -off : off;
         batch->rox[j] = at->px[k] + off * gx;
         batch->roy[j] = at->py[k] + off * gy;

@@ -17,12 +17,13 @@ void MCR_ISA_NAME(mcr_stage_emit)(struct mcr_batch *batch, uint32_t begin, uint3
 void MCR_ISA_NAME(mcr_stage_background)(struct mcr_batch *batch)
 {
     const struct mcr_paths *paths = &batch->state;
-    const double *radiance = batch->core->scene->render.background;
+    const double *radiance = batch->core->scene->render.background, *weight = batch->core->combines ? batch->light.weight : NULL;
     MCR_LANES
     for (uint32_t i = 0; i < batch->miss_count; i++) {
-        uint32_t l = batch->source[batch->miss[i]], slot = paths->slot[l];
-        batch->slot_r[slot] += paths->r[l] * radiance[0];
-        batch->slot_g[slot] += paths->g[l] * radiance[1];
-        batch->slot_b[slot] += paths->b[l] * radiance[2];
+        uint32_t j = batch->miss[i], l = batch->source[j], slot = paths->slot[l];
+        double share = weight ? weight[j] : 1;
+        batch->slot_r[slot] += paths->r[l] * radiance[0] * share;
+        batch->slot_g[slot] += paths->g[l] * radiance[1] * share;
+        batch->slot_b[slot] += paths->b[l] * radiance[2] * share;
     }
 }

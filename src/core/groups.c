@@ -71,9 +71,8 @@ int mcr_groups_init(struct mcr_core *core, struct mcr_arena *arena)
     return 0;
 }
 
-struct mcr_inputs mcr_group_inputs(struct mcr_batch *batch, const struct mcr_group *group, uint32_t begin, uint32_t end)
+struct mcr_inputs mcr_group_inputs(struct mcr_batch *batch, const struct mcr_group *group, const uint32_t *material, uint32_t begin, uint32_t end)
 {
-    const uint32_t *material = batch->at.material;
     for (uint32_t c = 0; c < group->channels; c++) {
         if (!group->varies[c]) {
             batch->channel[c] = group->constant + (size_t)c * MCR_LANE_PAD;

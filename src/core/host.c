@@ -199,7 +199,7 @@ static int32_t material_draw(const struct mcr_host *host, struct mcr_context *co
     const struct mcr_group *group = running_group(batch, at);
     if (!group || !group->plugin->draw)
         return MCR_E_UNSUPPORTED;
-    struct mcr_inputs inputs = mcr_group_inputs(batch, group, batch->running->begin, batch->running->end);
+    struct mcr_inputs inputs = mcr_group_inputs(batch, group, batch->at.material, batch->running->begin, batch->running->end);
     struct frame was = enter(batch, context->node, mcr_material_bytes(group, at->n));
     int32_t status = group->plugin->draw(host, context, group->instance, &inputs, at, number, out, density);
     leave(batch, &was);
@@ -213,7 +213,7 @@ static int32_t material_density(const struct mcr_host *host, struct mcr_context 
     const struct mcr_group *group = running_group(batch, at);
     if (!group || !group->plugin->density)
         return MCR_E_UNSUPPORTED;
-    struct mcr_inputs inputs = mcr_group_inputs(batch, group, batch->running->begin, batch->running->end);
+    struct mcr_inputs inputs = mcr_group_inputs(batch, group, batch->at.material, batch->running->begin, batch->running->end);
     struct frame was = enter(batch, context->node, mcr_material_bytes(group, at->n));
     int32_t status = group->plugin->density(host, context, group->instance, &inputs, at, toward, density);
     leave(batch, &was);
@@ -235,9 +235,18 @@ int32_t mcr_group_evaluate(struct mcr_batch *batch, const struct mcr_range *rang
 {
     const struct mcr_group *group = &batch->core->group[range->group];
     struct mcr_points at = mcr_batch_points(batch, range->begin, range->end);
-    struct mcr_inputs inputs = mcr_group_inputs(batch, group, range->begin, range->end);
+    struct mcr_inputs inputs = mcr_group_inputs(batch, group, batch->at.material, range->begin, range->end);
     struct frame was = enter(batch, group->node, mcr_material_bytes(group, at.n));
     int32_t status = group->plugin->evaluate(&batch->core->host, &batch->context, group->instance, &inputs, &at, toward, out);
+    leave(batch, &was);
+    return status;
+}
+
+static int32_t emission(struct mcr_batch *batch, const struct mcr_group *group, const struct mcr_points *at, const struct mcr_inputs *inputs,
+                        const struct mcr_colours *out)
+{
+    struct frame was = enter(batch, group->node, mcr_material_bytes(group, at->n));
+    int32_t status = group->plugin->emission(&batch->core->host, &batch->context, group->instance, inputs, at, out);
     leave(batch, &was);
     return status;
 }
@@ -246,11 +255,15 @@ int32_t mcr_group_emission(struct mcr_batch *batch, const struct mcr_range *rang
 {
     const struct mcr_group *group = &batch->core->group[range->group];
     struct mcr_points at = mcr_batch_points(batch, range->begin, range->end);
-    struct mcr_inputs inputs = mcr_group_inputs(batch, group, range->begin, range->end);
-    struct frame was = enter(batch, group->node, mcr_material_bytes(group, at.n));
-    int32_t status = group->plugin->emission(&batch->core->host, &batch->context, group->instance, &inputs, &at, out);
-    leave(batch, &was);
-    return status;
+    struct mcr_inputs inputs = mcr_group_inputs(batch, group, batch->at.material, range->begin, range->end);
+    return emission(batch, group, &at, &inputs, out);
+}
+
+int32_t mcr_points_emission(struct mcr_batch *batch, const struct mcr_group *group, const struct mcr_points *at, const uint32_t *material,
+                            const struct mcr_colours *out)
+{
+    struct mcr_inputs inputs = mcr_group_inputs(batch, group, material, 0, at->n);
+    return emission(batch, group, at, &inputs, out);
 }
 
 static int32_t source_fill(struct mcr_batch *batch, const struct mcr_node *node, const struct mcr_samples *samples, uint32_t first, uint32_t count,

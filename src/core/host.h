@@ -27,6 +27,9 @@ int32_t mcr_node_density_emitter(struct mcr_batch *batch, const struct mcr_node 
 int32_t mcr_group_evaluate(struct mcr_batch *batch, const struct mcr_range *range, const struct mcr_directions *toward,
                            const struct mcr_colours *out);
 int32_t mcr_group_emission(struct mcr_batch *batch, const struct mcr_range *range, const struct mcr_colours *out);
+/* The same for points elsewhere, all of one group; material[0 .. n-1] are theirs. */
+int32_t mcr_points_emission(struct mcr_batch *batch, const struct mcr_group *group, const struct mcr_points *at, const uint32_t *material,
+                            const struct mcr_colours *out);
 uint64_t mcr_material_bytes(const struct mcr_group *group, uint32_t n);
 
 /* `count` numbers from dimension `first` on for the states begin .. end-1, through the chain of sources. */

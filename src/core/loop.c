@@ -6,6 +6,7 @@
 
 #include "base/cpu.h"
 #include "core/host.h"
+#include "core/light.h"
 #include "core/pass.h"
 
 /* Runs a statement and books its time on a stage, with --profile. */
@@ -181,6 +182,13 @@ static int32_t emission(struct mcr_batch *batch)
         int32_t status = mcr_group_emission(batch, range, &out);
         if (status)
             return status;
+        if (batch->core->combines)
+            for (uint32_t k = range->begin; k < range->end; k++) {
+                double weight = batch->light.weight[batch->order[k]];
+                batch->fr[k] *= weight;
+                batch->fg[k] *= weight;
+                batch->fb[k] *= weight;
+            }
         batch->core->stages->emit(batch, range->begin, range->end);
     }
     return MCR_OK;
@@ -195,15 +203,20 @@ static int32_t scatter_range(struct mcr_batch *batch, const struct mcr_range *ra
     struct mcr_points at = mcr_batch_points(batch, b, range->end);
     struct mcr_directions toward = {sizeof toward, n, batch->wx + b, batch->wy + b, batch->wz + b};
     struct mcr_colours out = colours(batch, b, range->end);
-    double *number[MCR_NUMBERS_MAX], *roulette = batch->number[MCR_NUMBERS_MAX - 1] + b;
+    double *number[MCR_NUMBERS_MAX], *roulette = batch->roulette + b;
     int32_t status;
+    uint32_t first = 0;
     for (uint32_t k = 0; k < MCR_NUMBERS_MAX; k++)
         number[k] = batch->number[k] + b;
+    for (uint32_t t = 0; t < core->continuing; t++)
+        first += node->technique[t].dimensions;
     batch->running = range;
     TIMED(MCR_STAGE_NUMBERS, status = mcr_numbers(batch, &batch->sorted, b, range->end, MCR_DIMENSION_SAMPLER, core->dimensions, number));
     if (!status)
         TIMED(MCR_STAGE_SAMPLER,
-              status = mcr_node_draw(batch, node, core->continuing, &at, (const double *const *)number, &toward, batch->density + b));
+              status = mcr_node_draw(batch, node, core->continuing, &at, (const double *const *)number + first, &toward, batch->density + b));
+    if (!status && core->combines)
+        TIMED(MCR_STAGE_LIGHT, status = mcr_light_lookups(batch, range, &at, number));
     if (!status)
         TIMED(MCR_STAGE_MATERIAL, status = mcr_group_evaluate(batch, range, &toward, &out));
     if (!status && core->scene->render.roulette)
@@ -223,6 +236,12 @@ static int32_t step(struct mcr_batch *batch, struct mcr_pass *pass)
     int32_t status;
     struct mcr_rays rays = {batch->rays, batch->rox, batch->roy, batch->roz, batch->rdx, batch->rdy, batch->rdz};
     TIMED(MCR_STAGE_HIT, core->trace->closest(core->accel, &rays, batch->t, batch->hit));
+    if (core->combines)
+        TIMED(MCR_STAGE_LIGHT, status = mcr_light_weights(batch));
+    else
+        status = MCR_OK;
+    if (status)
+        return status;
     TIMED(MCR_STAGE_SORT, core->stages->sort(batch));
     if (core->background && batch->miss_count)
         core->stages->background(batch);

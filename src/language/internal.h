@@ -12,7 +12,7 @@
  *
  * Mistakes. What is wrong is recorded where it is found. If the text can be read on from there, parsing goes on with an
  * MCR_VALUE_ERROR; if not, `panic` is set, everything returns up to the item, and mcr_recover skips to where the next one begins.
- * `fatal` (no memory) makes the lexer return TOKEN_END for ever.
+ * `fatal` (no memory, or too many mistakes) makes the lexer return TOKEN_END for ever.
  *
  * Depth of the C stack is bounded: every recursion passes mcr_enter, which stops at MCR_NESTING_LIMIT, and includes at MCR_INCLUDE_LIMIT.
  */
@@ -27,6 +27,7 @@
 
 #define MCR_WORD_LIMIT 255u                /* bytes of a word */
 #define MCR_DIGIT_LIMIT 1000u              /* bytes of a number: enough for any double written exactly */
+#define MCR_MISTAKE_LIMIT 1000u            /* where reading ends; far fewer are shown */
 #define MCR_ARGUMENT_LIMIT (1u << 20)      /* arguments of all calls together: a bound on memory */
 
 enum { TOKEN_END = 0, TOKEN_WORD = 256, TOKEN_NUMBER, TOKEN_STRING }; /* others: the character ( ) { } , = + - * / ^ */

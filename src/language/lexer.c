@@ -360,6 +360,10 @@ void mcr_next(struct mcr_parser *parser)
 {
     parser->taken_line = parser->lexer.line;
     parser->taken_column = (uint32_t)(parser->lexer.at - parser->lexer.line_start) + 1;
+    if (mcr_diagnostics_errors(parser->diagnostics) > MCR_MISTAKE_LIMIT && !parser->fatal) {
+        mcr_report(parser->diagnostics, MCR_ERROR, mcr_token_place(parser, &parser->token), "too many mistakes, the rest is not read");
+        parser->fatal = 1;
+    }
     mcr_lex(parser, &parser->lexer, &parser->token);
 }
 

@@ -70,7 +70,8 @@ struct mcr_definition {
 
 /*
  * Parses a scene file ("-": standard input) and all it includes into the root block (word "", no name or kind).
- * Mistakes are recorded and parsing goes on. Returns NULL only if there is nothing to go on with (unreadable file, no memory).
+ * Mistakes are recorded and parsing goes on. Returns NULL only if there is nothing to go on with (unreadable file, another format
+ * version, no memory, more than a thousand mistakes).
  * A tree that comes with errors may be checked further but not rendered.
  */
 const struct mcr_item *mcr_parse_file(struct mcr_arena *arena, struct mcr_diagnostics *diagnostics, const char *path,

@@ -53,7 +53,7 @@ void mcr_text_number(char *text, size_t length, double number)
 {
     char digits[32];
 
-    for (int precision = 1; precision <= 17; precision++) {
+    for (int precision = 15; precision <= 17; precision++) { /* fewer digits are within 15: zeros at the end are left out */
         snprintf(digits, sizeof digits, "%.*g", precision, number);
         if (strtod(digits, NULL) == number)
             break;

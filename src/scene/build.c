@@ -142,7 +142,8 @@ static void build_all(struct mcr_build *build, const struct mcr_item *root)
     if (camera)
         build->camera_place = camera->place;
     else if (!root->damaged)
-        mcr_error(build, root->place, "the scene needs a camera, expected for example camera perspective { from (0, 0, 5) to (0, 0, 0) fov 40 }");
+        mcr_error(build, root->place,
+                  "the scene needs a camera, expected for example camera perspective { from (0, 0, 5) to (0, 0, 0) fov 40 }");
     mcr_build_camera(build, camera);
     mcr_build_film(build, single(build, root, "film"));
     mcr_build_render(build, single(build, root, "render"));

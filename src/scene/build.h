@@ -77,15 +77,17 @@ int mcr_read_colour(struct mcr_build *build, const struct mcr_settings *settings
 int mcr_read_vector(struct mcr_build *build, const struct mcr_settings *settings, uint32_t index, double out[3]);
 int mcr_read_whole(struct mcr_build *build, const struct mcr_settings *settings, uint32_t index, uint32_t count, uint32_t *out);
 /* `count` tuples of `width` numbers each into out[count * width]. */
-int mcr_read_tuples(struct mcr_build *build, const struct mcr_settings *settings, uint32_t index, uint32_t count, uint32_t width, double *out);
+int mcr_read_tuples(struct mcr_build *build, const struct mcr_settings *settings, uint32_t index, uint32_t count, uint32_t width,
+                    double *out);
 /*
  * `value` as a tuple of `width` numbers of magnitude at most `limit`; `form` says what was expected where it is something else.
  * Returns 0, or -1 after an error.
  */
-int mcr_read_numbers(struct mcr_build *build, const struct mcr_value *value, const char *name, const char *of, const char *form, uint32_t width,
-                     double limit, double *out);
+int mcr_read_numbers(struct mcr_build *build, const struct mcr_value *value, const char *name, const char *of, const char *form,
+                     uint32_t width, double limit, double *out);
 /* The items of a list of tuples, also where the list has one item only and its parentheses stand for nothing. -1 after an error. */
-int mcr_read_list(struct mcr_build *build, const struct mcr_settings *settings, uint32_t index, const struct mcr_value **item, uint32_t *count);
+int mcr_read_list(struct mcr_build *build, const struct mcr_settings *settings, uint32_t index, const struct mcr_value **item,
+                  uint32_t *count);
 /* Records that `value` is of another kind than `form` says. Returns -1. */
 int mcr_wrong_kind(struct mcr_build *build, const struct mcr_value *value, const char *name, const char *of, const char *form);
 /* "0.5", "a tuple of 2", ... */
@@ -110,7 +112,8 @@ void mcr_build_geometry(struct mcr_build *build, const struct mcr_item *root, co
 /* One shape, moved by `transform` into the camera's frame, still in world units. */
 void mcr_build_shape(struct mcr_build *build, const struct mcr_item *block, const struct mcr_transform *transform);
 void mcr_build_quad(struct mcr_build *build, const struct mcr_settings *settings, const struct mcr_transform *transform, uint32_t material);
-void mcr_build_triangle(struct mcr_build *build, const struct mcr_settings *settings, const struct mcr_transform *transform, uint32_t material);
+void mcr_build_triangle(struct mcr_build *build, const struct mcr_settings *settings, const struct mcr_transform *transform,
+                        uint32_t material);
 void mcr_build_mesh(struct mcr_build *build, const struct mcr_settings *settings, const struct mcr_transform *transform, uint32_t material);
 /* Upper bounds for the arrays of triangles that a mesh needs. */
 void mcr_build_mesh_room(struct mcr_build *build, const struct mcr_item *block);

@@ -53,7 +53,8 @@ static void field_of_view(struct mcr_build *build, const struct mcr_settings *se
             mcr_error(build, settings->value[CAMERA_FILM_HEIGHT]->place, "'film_height' over 'focal' is out of range");
     } else if (has_focal == 0 || has_height == 0) {
         uint32_t given = has_focal == 0 ? CAMERA_FOCAL : CAMERA_FILM_HEIGHT, other = has_focal == 0 ? CAMERA_FILM_HEIGHT : CAMERA_FOCAL;
-        mcr_error(build, settings->key[given], "'%s' needs '%s' beside it", settings->word->setting[given].name, settings->word->setting[other].name);
+        mcr_error(build, settings->key[given], "'%s' needs '%s' beside it", settings->word->setting[given].name,
+                  settings->word->setting[other].name);
     } else if (!settings->damaged) {
         mcr_error(build, settings->place, "'camera' needs 'fov', or 'focal' with 'film_height'");
     }

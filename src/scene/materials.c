@@ -20,7 +20,8 @@ static void sort_names(struct mcr_build *build)
         build->sorted[i] = (struct mcr_named_material){ scene->material[i].name, i };
     qsort(build->sorted, n, sizeof *build->sorted, by_name);
     for (uint32_t i = 0, first = 0; i < n; i++) {
-        const struct mcr_scene_material *one = &scene->material[build->sorted[i].number], *other = &scene->material[build->sorted[first].number];
+        const struct mcr_scene_material *one = &scene->material[build->sorted[i].number],
+            *other = &scene->material[build->sorted[first].number];
         build->names[i] = one->name;
         if (i == first || strcmp(one->name, other->name) != 0) {
             first = i;
@@ -37,7 +38,8 @@ static void create(struct mcr_build *build, const struct mcr_item *block, struct
     material->place = block->name ? block->name_place : block->place;
     material->traits.size = sizeof material->traits;
     if (!block->name || !block->kind) {
-        mcr_error(build, block->place, "'material' needs its %s, expected material NAME KIND { ... }", block->name ? "kind" : "name and kind");
+        mcr_error(build, block->place, "'material' needs its %s, expected material NAME KIND { ... }",
+                  block->name ? "kind" : "name and kind");
         return;
     }
     material->node = mcr_material_create(build->arena, build->diagnostics, build->registry, block);

@@ -52,7 +52,8 @@ int mcr_build_add_triangle(struct mcr_build *build, uint32_t material, int mirro
 }
 
 /* Stores one shading normal; -1 after an error. */
-static int add_normal(struct mcr_build *build, const struct mcr_transform *transform, const struct mcr_value *value, const char *of, const double n[3])
+static int add_normal(struct mcr_build *build, const struct mcr_transform *transform, const struct mcr_value *value, const char *of,
+                      const double n[3])
 {
     struct mcr_triangles *triangles = &build->scene->triangles;
     uint32_t i = triangles->normal_count;
@@ -75,12 +76,14 @@ static void add_uv(struct mcr_build *build, const double uv[2])
     triangles->v[triangles->uv_count++] = uv[1];
 }
 
-void mcr_build_triangle(struct mcr_build *build, const struct mcr_settings *settings, const struct mcr_transform *transform, uint32_t material)
+void mcr_build_triangle(struct mcr_build *build, const struct mcr_settings *settings, const struct mcr_transform *transform,
+                        uint32_t material)
 {
     const struct mcr_triangles *triangles = &build->scene->triangles;
     double p[3][3], n[9], uv[6], at[3], u[3], v[3];
     uint32_t corner[3], normals[3], uvs[3];
-    int has_normals = mcr_read_tuples(build, settings, TRIANGLE_NORMALS, 3, 3, n), has_uv = mcr_read_tuples(build, settings, TRIANGLE_UV, 3, 2, uv);
+    int has_normals = mcr_read_tuples(build, settings, TRIANGLE_NORMALS, 3, 3, n);
+    int has_uv = mcr_read_tuples(build, settings, TRIANGLE_UV, 3, 2, uv);
     int bad = has_normals < 0 || has_uv < 0;
     for (uint32_t k = 0; k < 3; k++)
         bad |= mcr_read_vector(build, settings, TRIANGLE_A + k, p[k]) != 0;
@@ -109,7 +112,8 @@ void mcr_build_triangle(struct mcr_build *build, const struct mcr_settings *sett
         mcr_error(build, settings->place, "'triangle' has no area to rounding where it is moved to");
 }
 
-static int add_vertices(struct mcr_build *build, const struct mcr_settings *settings, const struct mcr_transform *transform, uint32_t *count)
+static int add_vertices(struct mcr_build *build, const struct mcr_settings *settings, const struct mcr_transform *transform,
+                        uint32_t *count)
 {
     const struct mcr_value *item;
     double p[3], at[3];
@@ -128,8 +132,8 @@ static int add_vertices(struct mcr_build *build, const struct mcr_settings *sett
 }
 
 /* What comes once a vertex: normals (width 3) or uv (width 2). 0, 1 if not given, -1 after an error. */
-static int add_per_vertex(struct mcr_build *build, const struct mcr_settings *settings, const struct mcr_transform *transform, uint32_t index,
-                          uint32_t vertices)
+static int add_per_vertex(struct mcr_build *build, const struct mcr_settings *settings, const struct mcr_transform *transform,
+                          uint32_t index, uint32_t vertices)
 {
     const char *name = settings->word->setting[index].name;
     uint32_t width = index == MESH_NORMALS ? 3 : 2, count;
@@ -141,7 +145,8 @@ static int add_per_vertex(struct mcr_build *build, const struct mcr_settings *se
     if (mcr_read_list(build, settings, index, &item, &count) != 0)
         return -1;
     if (count != vertices) {
-        mcr_error(build, settings->value[index]->place, "'%s' of 'mesh' has %u, expected one for each of the %u vertices", name, count, vertices);
+        mcr_error(build, settings->value[index]->place, "'%s' of 'mesh' has %u, expected one for each of the %u vertices", name, count,
+                  vertices);
         return -1;
     }
     for (uint32_t i = 0; i < count; i++) {
@@ -170,7 +175,8 @@ static uint32_t read_face(struct mcr_build *build, const struct mcr_value *value
         if (number->kind == MCR_VALUE_ERROR)
             return 0;
         if (number->kind != MCR_VALUE_NUMBER || floor(number->number) != number->number) {
-            mcr_error(build, tuple->item[k].place, "a face of 'mesh' has %s, expected whole numbers of vertices", mcr_value_described(number, text));
+            mcr_error(build, tuple->item[k].place, "a face of 'mesh' has %s, expected whole numbers of vertices",
+                      mcr_value_described(number, text));
             return 0;
         }
         if (!(number->number >= 0 && number->number < vertices)) {

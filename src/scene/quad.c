@@ -21,7 +21,8 @@ static void add_parallelogram(struct mcr_build *build, const struct mcr_settings
         shape->n[i] = -shape->n[i];
 }
 
-static void build_edges(struct mcr_build *build, const struct mcr_settings *settings, const struct mcr_transform *transform, uint32_t material)
+static void build_edges(struct mcr_build *build, const struct mcr_settings *settings, const struct mcr_transform *transform,
+                        uint32_t material)
 {
     double corner[3], edge[2][3];
     int bad = mcr_read_vector(build, settings, QUAD_CORNER, corner) != 0;
@@ -95,7 +96,8 @@ static int check_corners(struct mcr_build *build, const struct mcr_value *place,
     return 0;
 }
 
-static void build_corners(struct mcr_build *build, const struct mcr_settings *settings, const struct mcr_transform *transform, uint32_t material)
+static void build_corners(struct mcr_build *build, const struct mcr_settings *settings, const struct mcr_transform *transform,
+                          uint32_t material)
 {
     double c[4][3], at[3];
     uint32_t vertex[4];

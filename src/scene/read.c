@@ -96,8 +96,8 @@ static const struct mcr_value *tuple_of(struct mcr_build *build, const struct mc
     return tuple->item;
 }
 
-int mcr_read_numbers(struct mcr_build *build, const struct mcr_value *value, const char *name, const char *of, const char *form, uint32_t width,
-                     double limit, double *out)
+int mcr_read_numbers(struct mcr_build *build, const struct mcr_value *value, const char *name, const char *of, const char *form,
+                     uint32_t width, double limit, double *out)
 {
     const struct mcr_value *item = tuple_of(build, value, name, of, form, width);
     if (!item)
@@ -146,7 +146,8 @@ int mcr_read_whole(struct mcr_build *build, const struct mcr_settings *settings,
         if (!in_range(build, row, &item[i], number, settings->of))
             return -1;
         if (floor(number) != number) {
-            mcr_error(build, item[i].place, "'%s' of '%s' has %.17g, expected %s", row->name, settings->of, number, mcr_word_form(row->type));
+            mcr_error(build, item[i].place, "'%s' of '%s' has %.17g, expected %s", row->name, settings->of, number,
+                      mcr_word_form(row->type));
             return -1;
         }
         out[i] = (uint32_t)number;
@@ -154,7 +155,8 @@ int mcr_read_whole(struct mcr_build *build, const struct mcr_settings *settings,
     return 0;
 }
 
-int mcr_read_list(struct mcr_build *build, const struct mcr_settings *settings, uint32_t index, const struct mcr_value **item, uint32_t *count)
+int mcr_read_list(struct mcr_build *build, const struct mcr_settings *settings, uint32_t index, const struct mcr_value **item,
+                  uint32_t *count)
 {
     const struct mcr_parameter *row = &settings->word->setting[index];
     const struct mcr_value *value = settings->value[index], *list = mcr_value_resolve(value);
@@ -171,7 +173,8 @@ int mcr_read_list(struct mcr_build *build, const struct mcr_settings *settings, 
     return 0;
 }
 
-int mcr_read_tuples(struct mcr_build *build, const struct mcr_settings *settings, uint32_t index, uint32_t count, uint32_t width, double *out)
+int mcr_read_tuples(struct mcr_build *build, const struct mcr_settings *settings, uint32_t index, uint32_t count, uint32_t width,
+                    double *out)
 {
     const struct mcr_parameter *row = &settings->word->setting[index];
     const struct mcr_value *item;
@@ -183,7 +186,8 @@ int mcr_read_tuples(struct mcr_build *build, const struct mcr_settings *settings
     if (mcr_read_list(build, settings, index, &item, &given) != 0)
         return -1;
     if (given != count) {
-        mcr_error(build, settings->value[index]->place, "'%s' of '%s' has %u, expected %s", row->name, settings->of, given, mcr_word_form(row->type));
+        mcr_error(build, settings->value[index]->place, "'%s' of '%s' has %u, expected %s", row->name, settings->of, given,
+                  mcr_word_form(row->type));
         return -1;
     }
     for (uint32_t i = 0; i < count; i++)

@@ -31,7 +31,8 @@ static void check_available(struct mcr_build *build, const struct mcr_settings *
 {
     static const char *const name[] = { [RENDER_ACCEL] = "embree", [RENDER_PRECISION] = "single" };
     if (number > last)
-        mcr_error(build, settings->value[index]->place, "'%s %s' is not available in this build", settings->word->setting[index].name, name[index]);
+        mcr_error(build, settings->value[index]->place, "'%s %s' is not available in this build", settings->word->setting[index].name,
+                  name[index]);
 }
 
 static double number_of(struct mcr_build *build, const struct mcr_settings *settings, uint32_t index)
@@ -137,7 +138,8 @@ static int check_lights(struct mcr_build *build, const struct mcr_sampler *sampl
     }
     if (!build->scene->has_lights && !covers(sampler->directions, MCR_COVERS_REFLECTION | MCR_COVERS_TRANSMISSION) &&
         mcr_diagnostics_errors(build->diagnostics) == 0)
-        mcr_report(build->diagnostics, MCR_WARNING, light->place, "the scene has no light that '%s' could sample: only emission will be seen",
+        mcr_report(build->diagnostics, MCR_WARNING, light->place,
+                   "the scene has no light that '%s' could sample: only emission will be seen",
                    light->descriptor->name);
     return 0;
 }
@@ -152,7 +154,8 @@ static int create_sampler(struct mcr_build *build, int has_lights)
 {
     struct mcr_scene *scene = build->scene;
     mcr_sampler_destroy(scene->sampler);
-    scene->sampler = mcr_sampler_create(build->arena, build->diagnostics, build->registry, build->sampler, planned(&scene->render), has_lights);
+    scene->sampler = mcr_sampler_create(build->arena, build->diagnostics, build->registry, build->sampler, planned(&scene->render),
+                                        has_lights);
     return scene->sampler ? 0 : -1;
 }
 
@@ -160,8 +163,9 @@ void mcr_build_sampler(struct mcr_build *build)
 {
     struct mcr_scene *scene = build->scene;
     struct mcr_render_settings *render = &scene->render;
-    /* With a plane as the only emitter, `light` is to be refused for that reason and not for the want of emitters. */
-    int lights = scene->has_lights, first_lights = lights || build->planes_emit;
+    /* `light` is to be refused for a plane that emits, or for what was wrong with a lamp, and not for the want of emitters as well. */
+    int wrong = mcr_diagnostics_errors(build->diagnostics) > 0;
+    int lights = scene->has_lights, first_lights = lights || build->planes_emit || wrong;
     if (build->overrides && build->overrides->sampler && !build->sampler)
         return;
     if (!build->sampler) {
@@ -171,7 +175,7 @@ void mcr_build_sampler(struct mcr_build *build)
     if (!build->sampler || mcr_value_resolve(build->sampler)->kind == MCR_VALUE_ERROR)
         return;
     render->replicates = build->replicates ? build->replicates : 1;
-    if (create_sampler(build, first_lights) != 0 || check_lights(build, scene->sampler) != 0)
+    if (create_sampler(build, first_lights) != 0 || check_lights(build, scene->sampler) != 0 || wrong)
         return;
     if (!build->replicates && scene->sampler->correlated && render->spp >= REPLICATES_FROM_SPP)
         render->replicates = 2; /* sources lay out their samples by replicate: they are made anew for half as many */

@@ -100,9 +100,6 @@ struct mcr_render_settings {
     double background[3];
 };
 
-/* What the arena of a tree and its scene should be limited to: 16 GiB, far more than the text of MCR_SOURCE_LIMIT can ask for. */
-#define MCR_SCENE_MEMORY_LIMIT ((size_t)16 << 30)
-
 struct mcr_scene {
     struct mcr_arena *arena;
     const char *path;

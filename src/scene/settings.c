@@ -35,7 +35,8 @@ static int find_setting(const struct mcr_block_word *word, const char *name)
     return -1;
 }
 
-static void unknown_setting(struct mcr_build *build, struct mcr_place place, const char *what, const char *name, struct mcr_settings *settings)
+static void unknown_setting(struct mcr_build *build, struct mcr_place place, const char *what, const char *name,
+                            struct mcr_settings *settings)
 {
     const char *words[MCR_SETTINGS_LIMIT], *nearest;
     for (uint32_t i = 0; i < settings->word->count; i++)

@@ -13,7 +13,8 @@ struct mcr_shape *mcr_build_new_shape(struct mcr_build *build, const struct mcr_
 }
 
 /* A point, moved; 0 when it is there. */
-static int moved_point(struct mcr_build *build, const struct mcr_settings *settings, uint32_t index, const struct mcr_transform *transform, double out[3])
+static int moved_point(struct mcr_build *build, const struct mcr_settings *settings, uint32_t index,
+                       const struct mcr_transform *transform, double out[3])
 {
     double p[3];
     int result = mcr_read_vector(build, settings, index, p);
@@ -34,7 +35,8 @@ static int read_normal(struct mcr_build *build, const struct mcr_settings *setti
     return 0;
 }
 
-static void build_plane(struct mcr_build *build, const struct mcr_settings *settings, const struct mcr_transform *transform, uint32_t material)
+static void build_plane(struct mcr_build *build, const struct mcr_settings *settings, const struct mcr_transform *transform,
+                        uint32_t material)
 {
     double point[3], normal[3], distance;
     struct mcr_shape *shape;
@@ -50,7 +52,8 @@ static void build_plane(struct mcr_build *build, const struct mcr_settings *sett
         shape->c[i] = distance * shape->n[i];
 }
 
-static void build_sphere(struct mcr_build *build, const struct mcr_settings *settings, const struct mcr_transform *transform, uint32_t material)
+static void build_sphere(struct mcr_build *build, const struct mcr_settings *settings, const struct mcr_transform *transform,
+                         uint32_t material)
 {
     double center[3], radius, factor = mcr_transform_similarity(transform);
     struct mcr_shape *shape;
@@ -84,7 +87,8 @@ static void basis(const double n[3], double p[3], double q[3])
     q[2] = -n[1];
 }
 
-static void build_disk(struct mcr_build *build, const struct mcr_settings *settings, const struct mcr_transform *transform, uint32_t material)
+static void build_disk(struct mcr_build *build, const struct mcr_settings *settings, const struct mcr_transform *transform,
+                       uint32_t material)
 {
     double center[3], normal[3], radius, unit[3], axis[2][3];
     struct mcr_shape *shape;
@@ -115,12 +119,14 @@ static int read_box(struct mcr_build *build, const struct mcr_settings *settings
         uint32_t mixed = value[BOX_CORNER] ? BOX_CORNER : value[BOX_SIZE] ? BOX_SIZE : 0;
         int bad;
         if (mixed) {
-            mcr_error(build, settings->key[mixed], "'%s' and '%s' are both given in 'box', expected 'corner' and 'size', or 'min' and 'max'",
+            mcr_error(build, settings->key[mixed],
+                      "'%s' and '%s' are both given in 'box', expected 'corner' and 'size', or 'min' and 'max'",
                       settings->word->setting[mixed].name, settings->word->setting[given].name);
             return -1;
         }
         if (!value[other]) {
-            mcr_error(build, settings->key[given], "'%s' needs '%s' beside it", settings->word->setting[given].name, settings->word->setting[other].name);
+            mcr_error(build, settings->key[given], "'%s' needs '%s' beside it", settings->word->setting[given].name,
+                      settings->word->setting[other].name);
             return -1;
         }
         bad = mcr_read_vector(build, settings, BOX_MIN, corner) != 0;
@@ -144,7 +150,8 @@ static int read_box(struct mcr_build *build, const struct mcr_settings *settings
     return mcr_read_vector(build, settings, BOX_CORNER, corner) < 0 || mcr_read_vector(build, settings, BOX_SIZE, size) != 0 ? -1 : 0;
 }
 
-static void build_box(struct mcr_build *build, const struct mcr_settings *settings, const struct mcr_transform *transform, uint32_t material)
+static void build_box(struct mcr_build *build, const struct mcr_settings *settings, const struct mcr_transform *transform,
+                      uint32_t material)
 {
     double corner[3], size[3];
     struct mcr_shape *shape;

@@ -133,7 +133,8 @@ static void number_primitives(struct mcr_build *build)
     scene->triangles.first_primitive = (uint32_t)number;
     number += scene->triangles.count;
     if (number > INT32_MAX)
-        mcr_error(build, (struct mcr_place){ 0 }, "the scene has %llu surfaces, at most %d are allowed", (unsigned long long)number, INT32_MAX);
+        mcr_error(build, (struct mcr_place){ 0 }, "the scene has %llu surfaces, at most %d are allowed", (unsigned long long)number,
+                  INT32_MAX);
     scene->primitive_count = (uint32_t)number;
 }
 

@@ -23,7 +23,8 @@ static int check_step(struct mcr_build *build, const struct mcr_item *step, doub
     if (result == -1)
         mcr_error(build, step->value.place, "'%s' is singular: it would flatten what it moves", step->word);
     else if (result == -2)
-        mcr_error(build, step->value.place, "'%s' scales by more than %g or less than %g", step->word, MCR_EXTENT_LIMIT, 1 / MCR_EXTENT_LIMIT);
+        mcr_error(build, step->value.place, "'%s' scales by more than %g or less than %g", step->word, MCR_EXTENT_LIMIT,
+                  1 / MCR_EXTENT_LIMIT);
     return result;
 }
 

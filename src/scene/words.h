@@ -37,7 +37,9 @@ enum mcr_word_type {
 /* What a setting of this type looks like, e.g. "3 numbers (x, y, z)". */
 const char *mcr_word_form(uint32_t type);
 
-enum mcr_block_role { MCR_BLOCK_CAMERA, MCR_BLOCK_FILM, MCR_BLOCK_RENDER, MCR_BLOCK_MATERIAL, MCR_BLOCK_SHAPE, MCR_BLOCK_GROUP, MCR_BLOCK_TRANSFORM };
+enum mcr_block_role {
+    MCR_BLOCK_CAMERA, MCR_BLOCK_FILM, MCR_BLOCK_RENDER, MCR_BLOCK_MATERIAL, MCR_BLOCK_SHAPE, MCR_BLOCK_GROUP, MCR_BLOCK_TRANSFORM
+};
 
 /* A block, or a call with named arguments (filters). */
 struct mcr_block_word {

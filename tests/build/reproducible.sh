@@ -4,6 +4,8 @@
 . "$srcdir/tests/tap.sh"
 command -v strings >/dev/null || skip_all "reproducible.sh: no strings"
 
+[ "$MCR_SANITIZED" != 1 ] || skip_all "reproducible.sh: sanitizers keep the names of source files"
+
 host=$(uname -n)
 traces() # file: what it tells about where it was built; the installation's own folders may be in it
 {

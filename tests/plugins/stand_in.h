@@ -222,11 +222,18 @@ static int32_t stand_in_density(const struct mcr_host *host, struct mcr_context 
 static int32_t stand_in_mass(const struct mcr_host *host, struct mcr_context *context, const struct mcr_child *child, uint32_t technique,
                              const struct mcr_points *at, double *mass)
 {
-    if (child->plugin->mass)
-        return child->plugin->mass(host, context, child->instance, technique, at, mass);
-    for (uint32_t i = 0; i < at->n; i++)
+    void *before = context->scratch;
+    int32_t status = MCR_OK;
+
+    for (uint32_t i = 0; i < at->n && !child->plugin->mass; i++)
         mass[i] = 1;
-    return MCR_OK;
+    if (child->plugin->mass) {
+        context->scratch = new_scratch(child->plugin, child->instance, at->n);
+        status = child->plugin->mass(host, context, child->instance, technique, at, mass);
+        free(context->scratch);
+        context->scratch = before;
+    }
+    return status;
 }
 
 /* The light of this host: the direction +z alone where numbers 0 is below 1/2, nothing else; its "density" is 3 there. */

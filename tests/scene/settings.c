@@ -52,7 +52,8 @@ static void defaults(void)
     r = &world.scene->render;
     ok(f->width == 512 && f->height == 512 && f->x0 == 0 && f->y0 == 0 && f->x1 == 512 && f->y1 == 512, "512 x 512, all of it");
     ok(f->filter == MCR_FILTER_BOX && f->filter_radius == 0.5, "a box filter");
-    ok(r->spp == 16 && r->depth == 50 && r->seed == 0 && r->threads == 0 && r->batch == 0 && r->replicates == 1, "16 spp, depth 50, seed 0");
+    ok(r->spp == 16 && r->depth == 50 && r->seed == 0 && r->threads == 0 && r->batch == 0 && r->replicates == 1,
+       "16 spp, depth 50, seed 0");
     ok(r->roulette && r->roulette_from == 3 && !r->mis_power && r->accel == MCR_ACCEL_AUTO && mcr_largest(r->background) == 0,
        "roulette from 3, balance, auto, black");
     ok(!world.scene->has_lights && strcmp(world.scene->sampler->expression, "cosine") == 0, "without light the sampler is cosine");
@@ -68,7 +69,8 @@ static void defaults(void)
 
 static void given(void)
 {
-    static const struct mcr_overrides over = { .has_spp = 1, .spp = 5, .has_depth = 1, .depth = 0, .has_seed = 1, .seed = 1ull << 63, .has_size = 1,
+    static const struct mcr_overrides over = { .has_spp = 1, .spp = 5, .has_depth = 1, .depth = 0, .has_seed = 1, .seed = 1ull << 63,
+                                               .has_size = 1,
                                                .width = 200, .height = 100, .has_crop = 1, .crop = { 1, 2, 3, 4 }, .has_accel = 1,
                                                .accel = MCR_ACCEL_LIST, .sampler = "uniform" };
     static const char text[] = CAMERA "film { size (640, 360) crop (10, 20, 30, 40) filter gaussian(sigma=0.75) }\n"
@@ -82,7 +84,8 @@ static void given(void)
     f = &world.scene->film;
     r = &world.scene->render;
     ok(f->width == 640 && f->height == 360 && f->x0 == 10 && f->y0 == 20 && f->x1 == 30 && f->y1 == 40, "size and crop");
-    ok(f->filter == MCR_FILTER_GAUSSIAN && f->filter_sigma == 0.75 && f->filter_radius == 1.5, "a filter with one argument, the other by default");
+    ok(f->filter == MCR_FILTER_GAUSSIAN && f->filter_sigma == 0.75 && f->filter_radius == 1.5,
+       "a filter with one argument, the other by default");
     ok(r->spp == 7 && r->depth == 3 && r->seed == 9007199254740992u && r->threads == 2 && r->replicates == 3 && r->batch == 512, "numbers");
     ok(r->roulette && r->roulette_from == 5 && r->mis_power && r->accel == MCR_ACCEL_BVH && same3(r->background, 1, 2, 3), "words");
     close_world(&world);
@@ -90,7 +93,8 @@ static void given(void)
     f = &world.scene->film;
     r = &world.scene->render;
     ok(f->width == 200 && f->height == 100 && f->x0 == 1 && f->y0 == 2 && f->x1 == 3 && f->y1 == 4, "--size and --crop win");
-    ok(r->spp == 5 && r->depth == 0 && r->seed == 1ull << 63 && r->accel == MCR_ACCEL_LIST && r->threads == 2, "--spp, --depth, --seed and --accel win");
+    ok(r->spp == 5 && r->depth == 0 && r->seed == 1ull << 63 && r->accel == MCR_ACCEL_LIST && r->threads == 2,
+       "--spp, --depth, --seed and --accel win");
     ok(strcmp(world.scene->sampler->directions->descriptor->name, "uniform") == 0, "--sampler wins");
     close_world(&world);
 }
@@ -119,8 +123,40 @@ static void replicates(void)
     }
 }
 
+/* What does not fit together only since the command line said so. */
+static void refused(void)
+{
+    static const struct mcr_overrides small = { .has_size = 1, .width = 20, .height = 20 };
+    static const struct mcr_overrides crop = { .has_crop = 1, .crop = { 0, 0, 513, 1 } };
+    static const struct mcr_overrides huge = { .has_size = 1, .width = 65536, .height = 65536 };
+    static const struct mcr_overrides few = { .has_spp = 1, .spp = 2 };
+    static const struct mcr_overrides sampler = { .sampler = "no-such-sampler" };
+    static const struct {
+        const char *what, *text;
+        const struct mcr_overrides *overrides;
+    } table[] = {
+        { "--size smaller than the scene's crop", CAMERA "film { crop (0, 0, 100, 100) }\n", &small },
+        { "--crop beyond the picture", CAMERA, &crop },
+        { "--size of more film than is allowed", CAMERA, &huge },
+        { "--spp below the scene's replicates", CAMERA "render { spp 64 replicates 4 }\n", &few },
+        { "--sampler that does not exist", CAMERA, &sampler },
+    };
+    struct world world;
+    quiet = 1;
+    for (size_t i = 0; i < sizeof table / sizeof table[0]; i++) {
+        world = open_world(table[i].text, table[i].overrides);
+        ok(!world.scene && mcr_diagnostics_errors(world.diagnostics) == 1, "%s is refused", table[i].what);
+        close_world(&world);
+    }
+    world = open_world("camera perspective { from (0, 0, 0) to (0, 0, 1) fov 40 fov 50 }\nrender { spp 0 }\n", NULL);
+    ok(!world.scene && mcr_diagnostics_errors(world.diagnostics) == 2, "every mistake is counted");
+    close_world(&world);
+    quiet = 0;
+}
+
 int main(void)
 {
+    refused();
     cameras();
     defaults();
     given();

@@ -69,7 +69,8 @@ static void flat_shapes(void)
     ok(near3(s[4].n, 1 / sqrt(10), 0, 3 / sqrt(10), 4 * U), "a stretched disk's normal is by the inverse transpose");
     ok(fabs(mcr_dot(s[4].n, s[4].e[0])) <= 4 * U && fabs(mcr_dot(s[4].n, s[4].e[1])) <= 4 * U, "its half axes lie in its plane");
     mcr_cross(s[4].e[0], s[4].e[1], v);
-    ok(fabs(mcr_length(v) / (scene->scale * scene->scale) - sqrt(5)) <= 16 * U, "and span its area"); /* |cof (1,0,1)/sqrt 2| = |(1,0,3)|/sqrt 2 */
+    ok(fabs(mcr_length(v) / (scene->scale * scene->scale) - sqrt(5)) <= 16 * U,
+       "and span its area"); /* |cof (1,0,1)/sqrt 2| = |(1,0,3)|/sqrt 2 */
     close_world(&world);
 }
 
@@ -109,7 +110,8 @@ static void quads(void)
     ok(scene->shape_count == 2 && memcmp(scene->shape[0].e, scene->shape[1].e, sizeof scene->shape[0].e) == 0 &&
            memcmp(scene->shape[0].c, scene->shape[1].c, sizeof scene->shape[0].c) == 0,
        "four corners of a parallelogram give the same bits as its edges");
-    ok(t->count == 4 && t->vertex_count == 8 && t->first_primitive == 2 && scene->primitive_count == 6, "a trapezoid becomes two triangles");
+    ok(t->count == 4 && t->vertex_count == 8 && t->first_primitive == 2 && scene->primitive_count == 6,
+       "a trapezoid becomes two triangles");
     ok(scene->has_lights, "which are lights where they emit");
     for (uint32_t i = 0; i < t->count; i++) {
         const uint32_t *v = t->vertex[i];
@@ -145,8 +147,10 @@ static void meshes(void)
     }
     ok(t->normal && t->normal[0][0] == UINT32_MAX && t->uv[0][2] == UINT32_MAX, "triangles without normals or uv say so");
     n = t->normal[7];
-    ok(near3((const double[3]){ t->nx[n[0]], t->ny[n[0]], t->nz[n[0]] }, -h, 0, h, 2 * U), "normals of a mirrored triangle are mirrored, and unit");
-    ok(t->vertex[7][1] == t->vertex[7][0] + 2 && n[1] == n[0] + 2 && t->uv[7][1] == t->uv[7][0] + 2, "its corners, normals and uv swap together");
+    ok(near3((const double[3]){ t->nx[n[0]], t->ny[n[0]], t->nz[n[0]] }, -h, 0, h, 2 * U),
+       "normals of a mirrored triangle are mirrored, and unit");
+    ok(t->vertex[7][1] == t->vertex[7][0] + 2 && n[1] == n[0] + 2 && t->uv[7][1] == t->uv[7][0] + 2,
+       "its corners, normals and uv swap together");
     n = t->uv[8];
     ok(t->normal[8][1] == UINT32_MAX && t->u[n[1]] == 0.5 && t->v[n[2]] == 0.5, "uv of a mesh go by its vertices");
     close_world(&world);

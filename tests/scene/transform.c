@@ -110,7 +110,8 @@ static void far_origins(void)
         for (int k = 0; k < 3; k++)
             worst = fmax(worst, fabs(out[k] + back[k] - expected[k]));
     }
-    ok(worst <= 2 * 0x1p-26, "turned about a far pivot, errors are the rounding of the result: %g", worst); /* ulp(2e8) = 2^-25, half of it each */
+    ok(worst <= 2 * 0x1p-26, "turned about a far pivot, errors are the rounding of the result: %g", worst); /* ulp(2e8) = 2^-25,
+        half of it each */
     mcr_transform_init(&t, (const double[3]){ 1e8, 2e8, -1e8 });
     translate(&t, 1e8, 2e8, -1e8);
     rotate(&t, 1, 1, 0, 33);
@@ -157,7 +158,8 @@ static void similarity(void)
     ok(mcr_transform_similarity(&t) == 3, "mirrored, too");
     for (int i = 0; i < 64; i++)
         rotate(&t, 1 + i % 3, 0.3 * i, -1, 5.7 * i);
-    ok(fabs(mcr_transform_similarity(&t) - 3) <= 64 * 16 * U * 3, "after 64 rotations it is one still: %.17g", mcr_transform_similarity(&t));
+    ok(fabs(mcr_transform_similarity(&t) - 3) <= 64 * 16 * U * 3, "after 64 rotations it is one still: %.17g",
+       mcr_transform_similarity(&t));
     scale(&t, 1, 1, 1.000001);
     ok(mcr_transform_similarity(&t) == 0, "stretched by a millionth it is not");
     t = start();

@@ -1,0 +1,271 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * The light services give the same bits for every instruction set and however lanes are grouped into batches; draws of points agree with their
+ * densities; nothing is written beyond the lanes; extreme points give no NaN.
+ */
+#include "emitters_scene.h"
+
+#include "core/emitter_lanes.h"
+
+#define LANES 1000u /* no multiple of a block */
+#define RESULTS 13u
+
+static void make_stage(struct stage *s, uint32_t many)
+{
+    const double e0[3] = {0.3, 0.02, 0}, e1[3] = {0, 0.3, 0.05}, axes[3][3] = {{0.1, 0, 0}, {0, 0.2, 0}, {0, 0.05, 0.1}};
+    stage_begin(s);
+    for (uint32_t i = 0; i < many; i++) {
+        double c[3] = {-0.4 + 0.06 * i, 0.1 * (i % 3), 0.6 - 0.03 * i};
+        uint32_t sides = i % 3 ? FRONT | BACK : i % 2 ? BACK : FRONT;
+        if (i % 5 < 2)
+            stage_flat(s, i % 5 ? MCR_SHAPE_PARALLELOGRAM : MCR_SHAPE_DISK, sides, 1 + i, c, e0, e1);
+        else if (i % 5 == 2)
+            stage_sphere(s, sides, 1, c, 0.1);
+        else
+            stage_axes(s, i % 5 == 3 ? MCR_SHAPE_ELLIPSOID : MCR_SHAPE_BOX, sides, 2, c, axes);
+    }
+    stage_triangle(s, FRONT | BACK, 1, (const double[3]){0, 0, 0.2}, (const double[3]){0.2, 0, 0.25}, (const double[3]){0, 0.3, 0.2});
+    stage_ready(s);
+}
+
+/* Everything that the services tell about lanes first .. first+n-1, into out[k][first + i]. */
+static void run(const struct stage *s, const struct mcr_emitter_functions *f, uint32_t by, const struct batch *b, uint32_t first, uint32_t n,
+                double *out[RESULTS])
+{
+    struct batch part;
+    double *q[8];
+    int32_t *emitter = aligned_alloc(64, (n + 8) * sizeof *emitter / 64 * 64 + 64);
+    batch_begin(&part, n);
+    for (uint32_t k = 0; k < 8; k++)
+        q[k] = doubles(n);
+    memcpy(part.px, b->px + first, n * sizeof(double));
+    memcpy(part.py, b->py + first, n * sizeof(double));
+    memcpy(part.pz, b->pz + first, n * sizeof(double));
+    for (int k = 0; k < 3; k++)
+        memcpy(part.u[k], b->u[k] + first, n * sizeof(double));
+    batch_draw(&part, s, f, by);
+    const double *drawn[] = {part.x, part.y, part.z, part.density};
+    for (uint32_t k = 0; k < 4; k++)
+        memcpy(out[k] + first, drawn[k], n * sizeof(double));
+    /* densities of directions that were drawn for another point: the next lane's */
+    memmove(part.x, part.x + 1, (n - 1) * sizeof(double));
+    for (uint32_t i = 0; i < n; i++) {
+        part.x[i] = b->x[first + i];
+        part.y[i] = b->y[first + i];
+        part.z[i] = b->z[first + i];
+    }
+    batch_density(&part, s, f, by, out[4] + first);
+    f->mass(s->emitters, s->scratch, by, &part.at, out[5] + first);
+    struct mcr_emitter_points points = {sizeof points, n, emitter, q[0], q[1], q[2], q[3], q[4], q[5], q[6]};
+    f->draw_point(s->emitters, s->scratch, by, &part.at, (const double *const *)part.u, &points, q[7]);
+    f->density_point(s->emitters, s->scratch, by, &part.at, &points, out[6] + first);
+    memcpy(out[7] + first, q[7], n * sizeof(double));
+    for (uint32_t i = 0; i < n; i++)
+        out[8][first + i] = emitter[i];
+    memcpy(out[9] + first, q[0], n * sizeof(double));
+    memcpy(out[10] + first, q[2], n * sizeof(double));
+    memcpy(out[11] + first, q[4], n * sizeof(double));
+    memcpy(out[12] + first, q[6], n * sizeof(double));
+    for (uint32_t k = 0; k < 8; k++)
+        free(q[k]);
+    free(emitter);
+    batch_end(&part);
+}
+
+static void make_points(struct batch *b)
+{
+    for (uint32_t i = 0; i < b->n; i++) {
+        double z = 2 * mcr_number(i, 11) - 1, angle = 2 * MCR_PI * mcr_number(i, 12);
+        b->px[i] = 2 * mcr_number(i, 13) - 1;
+        b->py[i] = 2 * mcr_number(i, 14) - 1;
+        b->pz[i] = 2 * mcr_number(i, 15) - 1;
+        b->x[i] = sqrt(1 - z * z) * cos(angle);
+        b->y[i] = sqrt(1 - z * z) * sin(angle);
+        b->z[i] = z;
+    }
+    batch_numbers(b, 3);
+}
+
+static uint64_t different(double *const a[RESULTS], double *const b[RESULTS], uint32_t n)
+{
+    uint64_t count = 0;
+    for (uint32_t k = 0; k < RESULTS; k++)
+        for (uint32_t i = 0; i < n; i++)
+            count += mcr_bits(a[k][i]) != mcr_bits(b[k][i]);
+    return count;
+}
+
+static void test_bits(uint32_t many)
+{
+    struct stage s;
+    struct batch b;
+    double *reference[RESULTS], *other[RESULTS];
+    make_stage(&s, many);
+    batch_begin(&b, LANES);
+    make_points(&b);
+    for (uint32_t k = 0; k < RESULTS; k++) {
+        reference[k] = doubles(LANES);
+        other[k] = doubles(LANES);
+    }
+    for (uint32_t by = 0; by <= 1; by++) {
+        run(&s, functions_of(0), by, &b, 0, LANES, reference);
+        for (uint32_t isa = 0; isa <= 2; isa++) {
+            static const uint32_t pieces[] = {1000, 128, 7, 1};
+            if (!functions_of(isa)) {
+                tap_skip("the same bits", "this processor lacks the instruction set");
+                continue;
+            }
+            for (size_t k = 0; k < sizeof pieces / sizeof *pieces; k++) {
+                for (uint32_t first = 0; first < LANES; first += pieces[k])
+                    run(&s, functions_of(isa), by, &b, first, LANES - first < pieces[k] ? LANES - first : pieces[k], other);
+                uint64_t count = different(reference, other, LANES);
+                ok(count == 0, "%u emitters, by %s: the same bits with isa %u in pieces of %u (%llu differ)", s.emitters->count,
+                   by ? "solid angle" : "area", isa, pieces[k], (unsigned long long)count);
+            }
+        }
+    }
+    for (uint32_t k = 0; k < RESULTS; k++) {
+        free(reference[k]);
+        free(other[k]);
+    }
+    batch_end(&b);
+    stage_end(&s);
+}
+
+/* draw_point: the point is where its direction and distance say, on the emitter that is told, and its density is that of density_point. */
+static void test_points(uint32_t many)
+{
+    const struct mcr_emitter_functions *f = best_functions();
+    struct stage s;
+    struct batch b;
+    double *q[8], *again = doubles(LANES);
+    int32_t *emitter = aligned_alloc(64, 64 * 1024);
+    make_stage(&s, many);
+    batch_begin(&b, LANES);
+    make_points(&b);
+    for (uint32_t k = 0; k < 8; k++)
+        q[k] = doubles(LANES);
+    for (uint32_t by = 0; by <= 1; by++) {
+        struct mcr_emitter_points points = {sizeof points, LANES, emitter, q[0], q[1], q[2], q[3], q[4], q[5], q[6]};
+        double worst = 0, apart = 0;
+        uint32_t wrong = 0, drawn = 0;
+        f->draw_point(s.emitters, s.scratch, by, &b.at, (const double *const *)b.u, &points, q[7]);
+        f->density_point(s.emitters, s.scratch, by, &b.at, &points, again);
+        for (uint32_t i = 0; i < LANES; i++) {
+            if (emitter[i] < 0) {
+                wrong += q[7][i] != 0 || again[i] != 0 || q[3][i] != 0 || q[4][i] != 0 || q[5][i] != 0;
+                continue;
+            }
+            drawn++;
+            wrong += emitter[i] >= (int32_t)s.emitters->count || !(q[7][i] > 0);
+            worst = fmax(worst, fabs(again[i] / q[7][i] - 1));
+            apart = fmax(apart, fabs(b.px[i] + q[6][i] * q[3][i] - q[0][i]) + fabs(b.py[i] + q[6][i] * q[4][i] - q[1][i]) +
+                                    fabs(b.pz[i] + q[6][i] * q[5][i] - q[2][i]));
+            const struct mcr_emitter *e = &s.emitters->emitter[emitter[i]];
+            const double *k = s.emitters->k[emitter[i]];
+            double at[3] = {q[0][i] - k[0], q[1][i] - k[1], q[2][i] - k[2]}, off;
+            if (e->kind == MCR_EMITTER_SPHERE)
+                off = sqrt(at[0] * at[0] + at[1] * at[1] + at[2] * at[2]) / k[MCR_K_RADIUS] - 1;
+            else if (e->kind == MCR_EMITTER_ELLIPSOID)
+                off = 0;
+            else
+                off = at[0] * k[MCR_K_N] + at[1] * k[MCR_K_N + 1] + at[2] * k[MCR_K_N + 2];
+            wrong += !(fabs(off) < 1e-10);
+        }
+        ok(wrong == 0 && drawn > LANES / 4, "%u emitters, by %u: points lie on the emitters they name (%u of %u wrong)", s.emitters->count, by, wrong, drawn);
+        ok(worst < 1e-6 && apart < 1e-14, "%u emitters, by %u: drawn points have the density that density_point tells (%.1e)", s.emitters->count, by, worst);
+    }
+    for (uint32_t k = 0; k < 8; k++)
+        free(q[k]);
+    free(again);
+    free(emitter);
+    batch_end(&b);
+    stage_end(&s);
+}
+
+/* Points in the plane, on edges and corners, at centres, far away; numbers 0 and just below 1: finite, and nothing beyond the lanes. */
+static void test_extremes(void)
+{
+    static const double special[] = {0, 0.3, 0.6, 0.1, 0.02, 0.32, 1e-9, 1e-300, 1e9, -1e9, 0.35, 0.65};
+    const uint32_t count = sizeof special / sizeof *special, lanes = count * count * count;
+    const struct mcr_emitter_functions *f = best_functions();
+    struct stage s;
+    struct batch b;
+    uint32_t bad = 0, touched = 0;
+    make_stage(&s, 7);
+    batch_begin(&b, lanes);
+    for (uint32_t i = 0; i < lanes; i++) {
+        b.px[i] = special[i % count];
+        b.py[i] = special[i / count % count];
+        b.pz[i] = special[i / count / count];
+        b.u[0][i] = mcr_number(i, 1);
+        b.u[1][i] = i % 3 == 0 ? 0 : i % 3 == 1 ? 1 - 0x1p-53 : 0.5;
+        b.u[2][i] = i % 5 == 0 ? 0 : i % 5 == 1 ? 1 - 0x1p-53 : 0.5;
+    }
+    for (uint32_t by = 0; by <= 1; by++) {
+        double mark = b.density[lanes] = b.x[lanes] = 12345;
+        batch_draw(&b, &s, f, by);
+        touched += b.density[lanes] != mark || b.x[lanes] != mark;
+        for (uint32_t i = 0; i < lanes; i++) {
+            double square = b.x[i] * b.x[i] + b.y[i] * b.y[i] + b.z[i] * b.z[i];
+            bad += !(b.density[i] >= 0 && b.density[i] < INFINITY) || !(square == 0 ? b.density[i] == 0 : fabs(square - 1) < 1e-12);
+        }
+        batch_density(&b, &s, f, by, b.density);
+        for (uint32_t i = 0; i < lanes; i++)
+            bad += !(b.density[i] >= 0 && b.density[i] < INFINITY);
+    }
+    ok(bad == 0, "extreme points: unit directions or none, finite densities (%u bad)", bad);
+    ok(touched == 0, "nothing is written beyond the lanes");
+    batch_end(&b);
+    stage_end(&s);
+}
+
+static void test_table(void)
+{
+    const double c[3] = {0, 0, 0.5}, e0[3] = {0.1, 0, 0}, e1[3] = {0, 0.2, 0}, axes[3][3] = {{0.1, 0, 0}, {0, 0.1, 0}, {0, 0, 0.1}};
+    struct stage s;
+    stage_begin(&s);
+    stage_shape(&s, MCR_SHAPE_PLANE, FRONT, 1, c);
+    stage_flat(&s, MCR_SHAPE_PARALLELOGRAM, 0, 1, c, e0, e1);
+    stage_flat(&s, MCR_SHAPE_PARALLELOGRAM, FRONT, 0, c, e0, e1);
+    stage_flat(&s, MCR_SHAPE_DISK, FRONT | BACK, 1e30, c, e0, e1);
+    stage_axes(&s, MCR_SHAPE_BOX, FRONT, 1e-30, c, axes);
+    stage_sphere(&s, BACK, 1e30, c, 0.1);
+    stage_ready(&s);
+    const struct mcr_emitters *e = s.emitters;
+    double disk = 2 * MCR_PI * 0.02, sphere = 4 * MCR_PI * 0.01;
+    ok(e->count == 8, "planes, dark sides and radiance 0 are no emitters: %u", e->count);
+    ok(e->of_primitive[0] == -1 && e->of_primitive[1] == -1 && e->of_primitive[2] == -1 && e->of_primitive[3] == 0 && e->of_primitive[4] == 1 &&
+           e->of_primitive[9] == 6 && e->of_primitive[10] == 7,
+       "primitives lead to their emitters");
+    ok(fabs(e->emitter[0].probability - disk / (disk + sphere)) < 1e-15 && e->emitter[3].probability >= 0 && e->emitter[3].probability < 1e-50,
+       "probability in proportion to luminance, area and sides: %.17g", e->emitter[0].probability);
+    stage_end(&s);
+
+    stage_begin(&s);
+    stage_ready(&s);
+    struct batch b;
+    batch_begin(&b, 8);
+    batch_draw(&b, &s, best_functions(), 1);
+    ok(s.emitters->count == 0 && b.x[0] == 0 && b.y[0] == 0 && b.z[0] == 0 && b.density[0] == 0, "without emitters nothing is drawn");
+    batch_density(&b, &s, best_functions(), 1, b.density);
+    ok(b.density[0] == 0, "without emitters the density is 0");
+    batch_end(&b);
+    stage_end(&s);
+}
+
+int main(void)
+{
+    test_bits(0);
+    test_bits(3);
+    test_bits(6);
+    test_bits(9);
+    test_bits(40);
+    test_points(0);
+    test_points(3);
+    test_points(9);
+    test_points(40);
+    test_extremes();
+    test_table();
+    return tap_done();
+}
