@@ -18,7 +18,7 @@
 
 #define MOST_CELLS (1u << 30) /* more samples than that come in sets of so many */
 #define BLOCK 256u            /* lanes that go through the loops together: their arrays are on the stack */
-#define ROUNDS 10u    /* of the network, even; 8 leave pairs of samples in 4 x 4 cells visibly uneven, 10 do not (tests/plugins/stratified.c) */
+#define ROUNDS 10u            /* of the network, even. 8 leave pairs of samples in 4 x 4 cells uneven, 10 do not: tests/plugins/stratified.c */
 
 static const struct mcr_parameter parameters[] = {
     {.size = sizeof(struct mcr_parameter),

@@ -316,7 +316,7 @@ const char *mcr_nearest_word(const char *word, const char *const *words, size_t 
             continue;
         edits = distance(word, length, words[i], other, best);
         /* A word of which nothing is left is not near. */
-        if (edits <= best && edits < length && edits < other) {
+        if (edits <= best && edits < (length > other ? length : other)) {
             if (!nearest || edits < best)
                 nearest = words[i];
             if (edits == 0)

@@ -3,6 +3,7 @@
 
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 #include <unistd.h>
 
 #include "base/cpu.h"
@@ -23,9 +24,19 @@ static int out_of_memory(void)
     return MCR_EXIT_FAILED;
 }
 
+static int is_gltf(const char *path)
+{
+    const char *dot = strrchr(path, '.');
+    return dot && (!strcasecmp(dot, ".gltf") || !strcasecmp(dot, ".glb"));
+}
+
 int mcr_load(struct mcr_loaded_scene *loaded, struct mcr_options *options)
 {
     memset(loaded, 0, sizeof *loaded);
+    if (is_gltf(options->scene)) {
+        fprintf(stderr, "mcrender: error: %s: glTF is not available in this build\n", options->scene);
+        return MCR_EXIT_USAGE;
+    }
     loaded->arena = mcr_arena_create(ARENA_LIMIT);
     loaded->diagnostics = mcr_diagnostics_create();
     if (!loaded->arena || !loaded->diagnostics)

@@ -1,7 +1,16 @@
 /* SPDX-License-Identifier: Apache-2.0 */
+#include <fcntl.h>
 #include <string.h>
 
 #include "cli/commands.h"
+
+/* A file that is opened must not become descriptor 0, 1 or 2: closed ones are taken, the wrong way round, so that using them fails. */
+static void take_closed_descriptors(void)
+{
+    for (int fd = 0; fd < 3; fd++)
+        if (fcntl(fd, F_GETFD) < 0)
+            (void)!open("/dev/null", fd ? O_RDONLY : O_WRONLY);
+}
 
 int main(int argc, char **argv)
 {
@@ -12,6 +21,7 @@ int main(int argc, char **argv)
     } commands[] = {{"", mcr_command_render, 1}, {"check", mcr_command_check, 1}, {"plugins", mcr_command_plugins, 0}};
     struct mcr_options options;
     size_t c = 0;
+    take_closed_descriptors();
     for (size_t i = 1; argc > 1 && i < sizeof commands / sizeof *commands; i++)
         if (!strcmp(argv[1], commands[i].name))
             c = i;

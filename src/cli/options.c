@@ -20,44 +20,53 @@ static const struct option {
     enum option_id id;
     int where;
     const char *name, *argument, *text;
-} table[] = {
-    {OUTPUT, RENDER, "-o", "FILE", "write here; several allowed; '-' is standard output (PPM); the extension tells the format"},
+} table[] = { /* in the order of option_id */
+    {OUTPUT, RENDER, "-o", "FILE", "image; '-': stdout"},
     {SPP, RENDER | CHECK, "--spp", "N", "samples per pixel"},
-    {DEPTH, RENDER | CHECK, "--depth", "N", "scattering events at most; 0 shows emission only"},
-    {SEED, RENDER | CHECK, "--seed", "N", "of the random numbers"},
-    {THREADS, RENDER | CHECK, "--threads", "N", "0: as many as there are processors; never changes the image"},
-    {SAMPLER, RENDER | CHECK, "--sampler", "EXPR", "e.g. 'stratified(mixture(cosine 1, light 1))'"},
-    {SIZE, RENDER | CHECK, "--size", "WxH", "of the picture, in pixels"},
-    {CROP, RENDER | CHECK, "--crop", "X0,Y0,X1,Y1", "render this part, from the upper left corner"},
-    {PRECISION, RENDER | CHECK, "--precision", "double", "of intersections"},
-    {ACCEL, RENDER | CHECK, "--accel", "KIND", "auto, list or bvh"},
-    {ISA, RENDER | CHECK | PLUGINS, "--isa", "NAME", "baseline, avx2 or avx512; never changes the image"},
-    {BATCH, RENDER | CHECK, "--batch", "N", "paths that a thread handles at once; never changes the image"},
-    {SET, RENDER | CHECK, "--set", "NAME=VALUE", "replaces the scene's `let NAME`"},
-    {PLUGIN, ALL, "--plugin", "FILE", "use this plugin file before all others"},
-    {REPORT, RENDER, "--report", "FILE", "write the report as JSON"},
-    {PROFILE, RENDER, "--profile", NULL, "time the stages of the core"},
-    {BITS, RENDER, "--bits", "8|16", "of PPM and PNG"},
-    {EXPOSURE, RENDER, "--exposure", "STOPS", "brightens PPM and PNG by 2^STOPS"},
-    {QUIET, RENDER | CHECK, "--quiet", NULL, "errors and warnings only"},
+    {DEPTH, RENDER | CHECK, "--depth", "N", "scatterings at most"},
+    {SEED, RENDER | CHECK, "--seed", "N", "of all randomness"},
+    {THREADS, RENDER | CHECK, "--threads", "N", "0: all processors"},
+    {SAMPLER, RENDER | CHECK, "--sampler", "EXPR", "draws directions"},
+    {SIZE, RENDER | CHECK, "--size", "WxH", "of the picture"},
+    {CROP, RENDER | CHECK, "--crop", "X,Y,X,Y", "part of the picture"},
+    {PRECISION, RENDER | CHECK, "--precision", "KIND", "double"},
+    {ACCEL, RENDER | CHECK, "--accel", "KIND", "auto, list, bvh"},
+    {ISA, RENDER | CHECK | PLUGINS, "--isa", "NAME", "instruction set"},
+    {BATCH, RENDER | CHECK, "--batch", "N", "paths at once"},
+    {SET, RENDER | CHECK, "--set", "NAME=VALUE", "replaces a `let`"},
+    {PLUGIN, ALL, "--plugin", "FILE", "before all others"},
+    {REPORT, RENDER, "--report", "FILE", "figures as JSON"},
+    {PROFILE, RENDER, "--profile", NULL, "time of each stage"},
+    {BITS, RENDER, "--bits", "8|16", "of PPM, PNG, TIFF"},
+    {EXPOSURE, RENDER, "--exposure", "STOPS", "of PPM, PNG, JPEG"},
+    {QUIET, RENDER | CHECK, "--quiet", NULL, "errors and warnings"},
     {WERROR, RENDER | CHECK, "--werror", NULL, "warnings are errors"},
     {HELP, ALL, "--help", NULL, "this text"},
     {VERSION, ALL, "--version", NULL, "the version"},
 };
 #define OPTIONS (sizeof table / sizeof *table)
 
+/* In two columns, one below the other: 80 characters and 24 lines are all there is. */
 void mcr_options_help(FILE *to)
 {
-    fputs("Usage: mcrender SCENE [-o FILE]... [OPTION]...   render\n"
+    const size_t rows = (OPTIONS + 1) / 2;
+    fputs("Usage: mcrender SCENE [-o FILE]... [OPTION]...   render; - is standard input\n"
           "       mcrender check SCENE [OPTION]...          parse and build only\n"
           "       mcrender plugins [NAME]                   list plugins, or explain one\n\n",
           to);
-    for (size_t i = 0; i < OPTIONS; i++) {
-        char left[32];
-        snprintf(left, sizeof left, "%s%s%s", table[i].name, table[i].argument ? " " : "", table[i].argument ? table[i].argument : "");
-        fprintf(to, "  %-22s %s\n", left, table[i].text);
+    for (size_t row = 0; row < rows; row++) {
+        for (size_t i = row; i < OPTIONS; i += rows) {
+            char left[24];
+            snprintf(left, sizeof left, "%s%s%s", table[i].name, table[i].argument ? " " : "", table[i].argument ? table[i].argument : "");
+            fprintf(to, i + rows < OPTIONS ? "  %-16s %-20s" : "  %-16s %s", left, table[i].text);
+        }
+        fputs("\n", to);
     }
-    fputs("\nExit status: 0 done, 1 failed, 2 usage, 3 scene error, 130 interrupted after saving.\n", to);
+    fputs("\nThe extension of FILE tells the format: ppm (or none), pfm, exr, png, jpg, tiff,\n"
+          "hdr. An option replaces what the scene says. --threads, --isa, --batch and\n"
+          "--accel never change the image.\n"
+          "Status: 0 done, 1 failed, 2 usage, 3 scene error, 130 interrupted after saving.\n",
+          to);
 }
 
 static int usage_error(const char *format, ...) __attribute__((format(printf, 1, 2)));
@@ -176,9 +185,6 @@ static int take(struct mcr_options *options, const struct option *option, const 
     case OUTPUT:
         if (options->output_count == MCR_OUTPUTS_MAX)
             return usage_error("-o may be given %u times at most", MCR_OUTPUTS_MAX);
-        for (uint32_t i = 0; i < options->output_count; i++)
-            if (!strcmp(options->output[i], text))
-                return usage_error("-o %s is given twice", text);
         options->output[options->output_count++] = text;
         return 0;
     case SPP:
@@ -202,8 +208,12 @@ static int take(struct mcr_options *options, const struct option *option, const 
         return status;
     }
     case CROP:
+        if (several("--crop", text, ',', 4, 0, "X0,Y0,X1,Y1", o->crop))
+            return MCR_EXIT_USAGE;
+        if (o->crop[0] >= o->crop[2] || o->crop[1] >= o->crop[3])
+            return usage_error("--crop %s is empty: X0 < X1 and Y0 < Y1 are expected", text);
         o->has_crop = 1;
-        return several("--crop", text, ',', 4, 0, "X0,Y0,X1,Y1", o->crop);
+        return 0;
     case PRECISION:
         return word("--precision", text, precisions, 2, 1, &chosen);
     case ACCEL:
@@ -248,29 +258,47 @@ static int take(struct mcr_options *options, const struct option *option, const 
     }
 }
 
-/* The option that `argument` names, as --name, --name=value or an abbreviation of ours (-h). *value is what follows '='. */
-static const struct option *find(const char *argument, const char **value)
+static const struct option *unknown(const char *name, size_t length)
 {
-    const char *equals = argument[1] == '-' ? strchr(argument, '=') : NULL;
-    size_t length = equals ? (size_t)(equals - argument) : strlen(argument);
-    *value = equals ? equals + 1 : NULL;
-    if (!strcmp(argument, "-h"))
-        argument = "--help", length = 6;
+    const char *names[OPTIONS];
+    char shown[64];
+    snprintf(shown, sizeof shown, "%.*s", (int)(length < sizeof shown ? length : sizeof shown), name);
     for (size_t i = 0; i < OPTIONS; i++)
-        if (strlen(table[i].name) == length && !strncmp(table[i].name, argument, length))
-            return &table[i];
+        names[i] = table[i].name;
+    const char *near = mcr_nearest_word(shown, names, OPTIONS);
+    usage_error("unknown option '%s'%s%s%s", shown, near ? ", did you mean '" : "", near ? near : "", near ? "'?" : " (see mcrender --help)");
     return NULL;
 }
 
-static int unknown(const char *argument)
+/* The option of which the first `length` bytes of `name` are all, or an abbreviation that fits no other. NULL after a message. */
+static const struct option *find_long(const char *name, size_t length)
 {
-    const char *names[OPTIONS];
-    char name[64];
-    snprintf(name, sizeof name, "%.*s", (int)strcspn(argument, "="), argument);
-    for (size_t i = 0; i < OPTIONS; i++)
-        names[i] = table[i].name;
-    const char *near = mcr_nearest_word(name, names, OPTIONS);
-    return usage_error("unknown option '%s'%s%s%s", name, near ? ", did you mean '" : "", near ? near : "", near ? "'?" : " (see mcrender --help)");
+    const struct option *found = NULL, *other = NULL;
+    for (size_t i = 0; i < OPTIONS && length > 2; i++) {
+        if (strncmp(table[i].name, name, length))
+            continue;
+        if (!table[i].name[length])
+            return &table[i];
+        other = found;
+        found = &table[i];
+    }
+    if (!other)
+        return found ? found : unknown(name, length);
+    usage_error("'%.*s' may be '%s' or '%s'", (int)length, name, other->name, found->name);
+    return NULL;
+}
+
+/* The option that an argument names: -h, -o, -oVALUE, --name, --name=VALUE. *value is the value in the argument, or NULL. NULL after a message. */
+static const struct option *find(const char *argument, const char **value)
+{
+    const char *equals = argument[1] == '-' ? strchr(argument, '=') : NULL;
+    *value = equals ? equals + 1 : NULL;
+    if (!strcmp(argument, "-h"))
+        argument = "--help";
+    if (argument[1] != 'o')
+        return find_long(argument, equals ? (size_t)(equals - argument) : strlen(argument));
+    *value = argument[2] ? argument + 2 : NULL;
+    return &table[OUTPUT];
 }
 
 int mcr_options_parse(struct mcr_options *options, const char *command, int argc, char **argv)
@@ -294,16 +322,18 @@ int mcr_options_parse(struct mcr_options *options, const char *command, int argc
         }
         const struct option *option = find(argv[i], &value);
         if (!option)
-            return unknown(argv[i]);
+            return MCR_EXIT_USAGE;
         if (!(option->where & where))
             return usage_error("%s does not go with 'mcrender %s'", option->name, command);
         if (option->argument && !value && ++i == argc)
             return usage_error("%s expects %s", option->name, option->argument);
         if (!option->argument && value)
             return usage_error("%s takes no value", option->name);
-        int status = take(options, option, option->argument ? value ? value : argv[i] : NULL);
-        if (status)
-            return status;
+        value = value ? value : argv[i];
+        if (option->argument && !*value)
+            return usage_error("%s expects %s, not an empty text", option->name, option->argument);
+        if (take(options, option, value))
+            return MCR_EXIT_USAGE;
     }
     return 0;
 }

@@ -1,9 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "cli/report.h"
 
-#include <errno.h>
-#include <string.h>
-#include <unistd.h>
+#include <math.h>
 
 #include "base/cpu.h"
 #include "base/json.h"
@@ -23,11 +21,11 @@ static double per_second(uint64_t count, double seconds)
     return seconds > 0 ? (double)count / seconds : 0;
 }
 
-/* 1/(MSE t): of luminance, with the render's wall time. */
+/* 1/(MSE t): of luminance, with the render's wall time. Infinite (in JSON null) where every sample was the same. */
 static double efficiency(const struct mcr_report_data *data)
 {
     double cost = data->figures.mean_variance * data->stats->wall_seconds;
-    return cost > 0 ? 1 / cost : 0;
+    return cost > 0 ? 1 / cost : INFINITY;
 }
 
 static void text_loaded(FILE *to, const struct mcr_report_data *data)
@@ -68,8 +66,7 @@ void mcr_report_text(FILE *to, const struct mcr_report_data *data)
     if (data->film->correlated && render->replicates > 1)
         fprintf(to, "          %u replicates of %u samples\n", render->replicates, render->spp / render->replicates);
     text_loaded(to, data);
-    fprintf(to, "coverage  %s%s\n", data->coverage.complete ? "complete" : "INCOMPLETE: this sampler alone does not estimate the whole image; it misses ",
-            data->coverage.missing);
+    fprintf(to, "coverage  %s%s\n", data->coverage.complete ? "complete" : "INCOMPLETE: misses ", data->coverage.missing);
     fprintf(to, "time      parse %.4f s, build %.4f s, render %.3f s (processor %.3f s, %u threads), write %.3f s\n", data->loaded->parse_seconds,
             data->loaded->build_seconds + data->accel_seconds, seconds, stats->cpu_seconds, stats->threads, data->write_seconds);
     fprintf(to, "work      %llu samples, %llu scatterings, %llu rays (%llu camera, %llu bounce, %llu shadow), %.4g rays/s\n",
@@ -85,11 +82,6 @@ void mcr_report_text(FILE *to, const struct mcr_report_data *data)
     }
     fprintf(to, "memory    %.1f MB at most\n", (double)mcr_peak_memory() / 1e6);
     text_error(to, data);
-    if (stats->not_finite)
-        fprintf(to, "warning   %llu samples were not finite and count as black; the first: pixel %u,%u sample %llu\n", (unsigned long long)stats->not_finite,
-                stats->not_finite_x, stats->not_finite_y, (unsigned long long)stats->not_finite_sample);
-    if (stats->interrupted)
-        fprintf(to, "warning   interrupted after %.4g of %u spp\n", data->film->pixels ? (double)stats->samples / (double)data->film->pixels : 0, render->spp);
     for (uint32_t i = 0; i < data->output_count; i++) {
         const struct mcr_report_output *output = &data->output[i];
         if (output->failed)
@@ -101,6 +93,18 @@ void mcr_report_text(FILE *to, const struct mcr_report_data *data)
             fprintf(to, " (%llu values not finite)", (unsigned long long)output->result.not_finite);
         fputs("\n", to);
     }
+}
+
+void mcr_report_warnings(FILE *to, const struct mcr_report_data *data)
+{
+    const struct mcr_render_stats *stats = data->stats;
+    if (!data->coverage.complete)
+        fprintf(to, "mcrender: warning: this sampler alone does not estimate the whole image: it misses %s\n", data->coverage.missing);
+    if (stats->not_finite)
+        fprintf(to, "mcrender: warning: %llu samples were not finite and count as black; the first: pixel %u,%u sample %llu\n",
+                (unsigned long long)stats->not_finite, stats->not_finite_x, stats->not_finite_y, (unsigned long long)stats->not_finite_sample);
+    if (stats->interrupted)
+        fprintf(to, "mcrender: warning: interrupted after %llu of %u spp\n", (unsigned long long)data->film->samples, data->loaded->scene->render.spp);
 }
 
 static void json_scene(struct mcr_json_writer *json, const struct mcr_report_data *data)
@@ -180,6 +184,13 @@ static void json_work(struct mcr_json_writer *json, const struct mcr_report_data
     mcr_json_unsigned(json, "passes", stats->passes);
     mcr_json_unsigned(json, "peak_memory", mcr_peak_memory());
     mcr_json_unsigned(json, "not_finite", stats->not_finite);
+    if (stats->not_finite) {
+        mcr_json_begin_object(json, "not_finite_first");
+        mcr_json_unsigned(json, "x", stats->not_finite_x);
+        mcr_json_unsigned(json, "y", stats->not_finite_y);
+        mcr_json_unsigned(json, "sample", stats->not_finite_sample);
+        mcr_json_end(json);
+    }
     mcr_json_boolean(json, "interrupted", stats->interrupted);
     mcr_json_end(json);
 }
@@ -211,10 +222,9 @@ static void json_image(struct mcr_json_writer *json, const struct mcr_report_dat
     mcr_json_end(json);
 }
 
-int mcr_report_json(const char *path, const struct mcr_report_data *data)
+int mcr_report_json(struct mcr_target *target, const struct mcr_report_data *data, char *error, size_t length)
 {
-    FILE *to = fopen(path, "w");
-    struct mcr_json_writer *json = to ? mcr_json_writer_create(to) : NULL;
+    struct mcr_json_writer *json = mcr_json_writer_create(NULL);
     int status = -1;
     if (json) {
         mcr_json_begin_object(json, NULL);
@@ -225,9 +235,16 @@ int mcr_report_json(const char *path, const struct mcr_report_data *data)
         json_image(json, data);
         mcr_json_end(json);
         status = mcr_json_writer_finish(json);
-        mcr_json_writer_destroy(json);
     }
-    if (to && fclose(to))
-        status = -1;
+    if (status) {
+        snprintf(error, length, "out of memory");
+        mcr_target_cancel(target);
+    } else {
+        size_t bytes;
+        const char *text = mcr_json_writer_text(json, &bytes);
+        status = mcr_target_write_text(target, text, bytes, error, length);
+    }
+    if (json)
+        mcr_json_writer_destroy(json);
     return status;
 }

@@ -15,7 +15,7 @@ struct mcr_report_output {
 
 struct mcr_report_data {
     const struct mcr_options *options;
-    const struct mcr_loaded_scene *loaded;
+    struct mcr_loaded_scene *loaded;
     const struct mcr_accel *accel;
     const struct mcr_render_stats *stats;
     const struct mcr_film *film;
@@ -27,8 +27,10 @@ struct mcr_report_data {
 };
 
 void mcr_report_text(FILE *to, const struct mcr_report_data *data);
-/* Returns 0, or -1 if it could not be written: errno tells why. */
-int mcr_report_json(const char *path, const struct mcr_report_data *data);
+/* What is wrong with the picture, for --quiet too. */
+void mcr_report_warnings(FILE *to, const struct mcr_report_data *data);
+/* Ends the target. Returns 0, or -1 with the reason in `error`. */
+int mcr_report_json(struct mcr_target *target, const struct mcr_report_data *data, char *error, size_t length);
 
 const char *mcr_accel_name(uint32_t kind);
 

@@ -69,6 +69,11 @@ static void cut_all(struct cutter *c, struct mcr_batch *b)
     cut_paths(c, &b->sorted, b->lanes);
     for (size_t i = 0; i < sizeof of_points / sizeof *of_points; i++)
         *of_points[i] = cut(c, b->lanes, sizeof(double));
+    if (!core->surfaces.smooth) {
+        at->nx = at->gx;
+        at->ny = at->gy;
+        at->nz = at->gz;
+    }
     at->material = cut(c, b->lanes, sizeof *at->material);
     at->primitive = cut(c, b->lanes, sizeof *at->primitive);
     b->order = cut(c, b->lanes, sizeof *b->order);

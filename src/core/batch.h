@@ -161,6 +161,7 @@ struct mcr_batch {
     char *scratch;                  /* scratch_bytes */
     uint64_t scratch_used;
     struct mcr_context context;
+    const struct mcr_node *failed;  /* whose operation failed, or NULL */
     const struct mcr_range *running; /* the range whose points a sampler works on, for the host's material services */
     /* for new camera paths */
     double *camera_x, *camera_y;

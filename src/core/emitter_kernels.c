@@ -183,14 +183,17 @@ static void density_egg(int alone, const struct mcr_emitter_lanes *lanes, const 
         BY_VARYING(density_egg_area, lanes);
 }
 
-void MCR_ISA_NAME(mcr_emitter_density)(uint32_t kind, uint32_t by, int alone, const struct mcr_emitter_lanes *lanes, const double *k, int varying)
+void MCR_ISA_NAME(mcr_emitter_density)(const struct mcr_emitters *all, uint32_t kind, uint32_t by, int alone, const struct mcr_emitter_lanes *lanes,
+                                       const double *k, int varying, struct mcr_disk_scratch *scratch)
 {
     if (kind == MCR_EMITTER_SPHERE)
         density_ball(by, alone, lanes, k, varying);
     else if (kind == MCR_EMITTER_ELLIPSOID)
         density_egg(alone, lanes, k, varying);
-    else if (by == MCR_LIGHT_BY_AREA || kind == MCR_EMITTER_DISK)
+    else if (by == MCR_LIGHT_BY_AREA)
         BY_VARYING(density_flat_area, lanes);
+    else if (kind == MCR_EMITTER_DISK)
+        MCR_ISA_NAME(mcr_emitter_disk_density)(all, lanes, k, varying, scratch);
     else if (kind == MCR_EMITTER_TRIANGLE)
         BY_VARYING(density_flat_solid, MCR_EMITTER_TRIANGLE, lanes);
     else
@@ -288,7 +291,7 @@ static void draw_round(uint32_t kind, uint32_t by, int alone, const struct mcr_e
 static void draw_flat(uint32_t kind, uint32_t by, const struct mcr_emitter_lanes *lanes, const double *k, int varying)
 {
     if (kind == MCR_EMITTER_DISK)
-        BY_VARYING(draw_flat_area, MCR_EMITTER_DISK, lanes);
+        BY_VARYING(draw_flat_area, MCR_EMITTER_DISK, lanes); /* by area */
     else if (kind == MCR_EMITTER_TRIANGLE && by == MCR_LIGHT_BY_AREA)
         BY_VARYING(draw_flat_area, MCR_EMITTER_TRIANGLE, lanes);
     else if (kind == MCR_EMITTER_TRIANGLE)
@@ -299,9 +302,12 @@ static void draw_flat(uint32_t kind, uint32_t by, const struct mcr_emitter_lanes
         BY_VARYING(draw_flat_solid, MCR_EMITTER_PARALLELOGRAM, lanes);
 }
 
-void MCR_ISA_NAME(mcr_emitter_draw)(uint32_t kind, uint32_t by, int alone, const struct mcr_emitter_lanes *lanes, const double *k, int varying)
+void MCR_ISA_NAME(mcr_emitter_draw)(const struct mcr_emitters *all, uint32_t kind, uint32_t by, int alone, const struct mcr_emitter_lanes *lanes,
+                                    const double *k, int varying, struct mcr_disk_scratch *scratch)
 {
-    if (kind == MCR_EMITTER_SPHERE || kind == MCR_EMITTER_ELLIPSOID)
+    if (kind == MCR_EMITTER_DISK && by == MCR_LIGHT_BY_SOLID_ANGLE)
+        MCR_ISA_NAME(mcr_emitter_disk_draw)(all, lanes, k, varying, scratch);
+    else if (kind == MCR_EMITTER_SPHERE || kind == MCR_EMITTER_ELLIPSOID)
         draw_round(kind, by, alone, lanes, k, varying);
     else
         draw_flat(kind, by, lanes, k, varying);

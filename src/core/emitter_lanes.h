@@ -28,6 +28,26 @@ struct mcr_emitter_pack {
     int32_t lane[MCR_EMITTER_BLOCK];
 };
 
+/* Disks by solid angle: the cones of all lanes, and a chunk of lanes whose sweeps have as many nodes. */
+#define MCR_DISK_CHUNK 32u
+#define MCR_DISK_NODES 32u
+#define MCR_DISK_ROWS 11u
+
+typedef double mcr_disk_row[MCR_DISK_CHUNK];
+
+struct mcr_disk_chunk {
+    mcr_disk_row cone[MCR_DISK_ROWS];
+    mcr_disk_row u, v, p, q, mean, phi, b1, b2, sine, twice, wx, wy, wz, density;
+    mcr_disk_row g[MCR_DISK_NODES], series[MCR_DISK_NODES];
+};
+
+struct mcr_disk_scratch {
+    mcr_emitter_row cone[MCR_DISK_ROWS]; /* axis, a and b along their axes, a^2, b^2 */
+    mcr_emitter_row nodes;               /* 8, 16, 32; 0: by area; -1: not seen */
+    int32_t list[MCR_EMITTER_BLOCK];
+    struct mcr_disk_chunk chunk;
+};
+
 struct mcr_emitter_scratch {
     mcr_emitter_row total;                /* sum of the probabilities of the emitters that are seen, then its inverse */
     mcr_emitter_row share;                /* of the chosen emitter, before division by the total */
@@ -35,6 +55,7 @@ struct mcr_emitter_scratch {
     int64_t chosen[MCR_EMITTER_BLOCK];    /* emitter, -1: none */
     int32_t list[MCR_EMITTER_BLOCK];
     struct mcr_emitter_pack pack, second; /* second: those of the pack that fall back to area */
+    struct mcr_disk_scratch disk;
 };
 
 /* emitter_kernels.c. Flags (1 or 0) the lanes whose rays (p; w) cross emitter e and that see it. */
@@ -45,10 +66,18 @@ void MCR_ISA_NAME(mcr_emitter_seen)(const struct mcr_emitters *all, uint32_t e, 
  * For lanes of one kind; `varying` tells whether constant j of lane i is k[j * MCR_EMITTER_BLOCK + i] or k[j].
  * density: of directions that cross. `alone`: the density of the one point at `distance`.
  */
-void MCR_ISA_NAME(mcr_emitter_density)(uint32_t kind, uint32_t by, int alone, const struct mcr_emitter_lanes *lanes, const double *k, int varying);
+void MCR_ISA_NAME(mcr_emitter_density)(const struct mcr_emitters *all, uint32_t kind, uint32_t by, int alone, const struct mcr_emitter_lanes *lanes,
+                                       const double *k, int varying, struct mcr_disk_scratch *scratch);
 /* distance: to what is seen in direction w. */
 void MCR_ISA_NAME(mcr_emitter_distance)(uint32_t kind, const struct mcr_emitter_lanes *lanes, const double *k, int varying);
 /* Draws w, density and distance (0 where it was drawn by solid angle); density NOT_STEADY: is to be drawn by area. */
-void MCR_ISA_NAME(mcr_emitter_draw)(uint32_t kind, uint32_t by, int alone, const struct mcr_emitter_lanes *lanes, const double *k, int varying);
+void MCR_ISA_NAME(mcr_emitter_draw)(const struct mcr_emitters *all, uint32_t kind, uint32_t by, int alone, const struct mcr_emitter_lanes *lanes,
+                                    const double *k, int varying, struct mcr_disk_scratch *scratch);
+
+/* emitter_disk.c: these two for disks by solid angle. */
+void MCR_ISA_NAME(mcr_emitter_disk_density)(const struct mcr_emitters *all, const struct mcr_emitter_lanes *lanes, const double *k, int varying,
+                                            struct mcr_disk_scratch *scratch);
+void MCR_ISA_NAME(mcr_emitter_disk_draw)(const struct mcr_emitters *all, const struct mcr_emitter_lanes *lanes, const double *k, int varying,
+                                         struct mcr_disk_scratch *scratch);
 
 #endif

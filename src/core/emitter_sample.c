@@ -179,12 +179,13 @@ static void choose_many(const struct mcr_emitters *all, uint32_t n, const double
 /* ---- drawing ------------------------------------------------------------------------------------------------------- */
 
 /* Draws in lanes of one kind; where solid angle is not steady, by area. */
-static void draw_lanes(uint32_t kind, uint32_t by, int alone, const struct mcr_emitter_lanes *lanes, const double *k, int varying,
-                       struct mcr_emitter_pack *second)
+static void draw_lanes(const struct mcr_emitters *all, uint32_t kind, uint32_t by, int alone, const struct mcr_emitter_lanes *lanes, const double *k,
+                       int varying, struct mcr_emitter_scratch *s)
 {
+    struct mcr_emitter_pack *second = &s->second;
     const double *restrict density = lanes->density;
     uint32_t falling = 0, count = 0;
-    DRAW(kind, by, alone, lanes, k, varying);
+    DRAW(all, kind, by, alone, lanes, k, varying, &s->disk);
     if (by == MCR_LIGHT_BY_AREA)
         return;
     for (uint32_t i = 0; i < lanes->n; i++)
@@ -199,7 +200,7 @@ static void draw_lanes(uint32_t kind, uint32_t by, int alone, const struct mcr_e
         gather_numbers(lanes, count, second->lane, second);
         for (uint32_t c = 0; varying && c < MCR_K_SIZE; c++)
             gather(count, second->lane, k + c * MCR_EMITTER_BLOCK, second->k[c]);
-        DRAW(kind, MCR_LIGHT_BY_AREA, alone, &part, varying ? second->k[0] : k, varying);
+        DRAW(all, kind, MCR_LIGHT_BY_AREA, alone, &part, varying ? second->k[0] : k, varying, &s->disk);
         scatter_drawn(count, second->lane, second, lanes);
     }
 }
@@ -231,7 +232,7 @@ static void draw_group(const struct mcr_emitters *all, uint32_t by, int alone, u
     gather_numbers(block, count, pack->lane, pack);
     if (by_kind)
         gather_constants(all, s->chosen, count, pack->lane, pack);
-    draw_lanes(kind, by, alone, &lanes, by_kind ? pack->k[0] : all->k[which], by_kind, &s->second);
+    draw_lanes(all, kind, by, alone, &lanes, by_kind ? pack->k[0] : all->k[which], by_kind, s);
     scatter_drawn(count, pack->lane, pack, block);
 }
 
@@ -246,7 +247,7 @@ static void draw_block(const struct mcr_emitters *all, uint32_t by, int alone, c
         return;
     }
     if (all->count == 1) {
-        draw_lanes(all->emitter[0].kind, by, alone, block, all->k[0], 0, &s->second);
+        draw_lanes(all, all->emitter[0].kind, by, alone, block, all->k[0], 0, s);
         return;
     }
     if (shares(all)) {
@@ -288,7 +289,7 @@ static void add_emitter(const struct mcr_emitters *all, uint32_t e, uint32_t by,
     struct mcr_emitter_lanes lanes = pack_lanes(pack, count);
     gather_points(block, count, s->list, pack);
     gather_directions(block, count, s->list, pack);
-    DENSITY(all->emitter[e].kind, by, 0, &lanes, all->k[e], 0);
+    DENSITY(all, all->emitter[e].kind, by, 0, &lanes, all->k[e], 0, &s->disk);
     for (uint32_t j = 0; j < count; j++)
         sum[s->list[j]] += probability * pack->density[j];
 }
@@ -440,7 +441,7 @@ static void density_of_points(const struct mcr_emitters *all, uint32_t by, const
         gather_directions(block, count, pack->lane, pack);
         gather(count, pack->lane, block->distance, pack->distance);
         gather_constants(all, s->chosen, count, pack->lane, pack);
-        DENSITY(kind, by, 1, &lanes, pack->k[0], 1);
+        DENSITY(all, kind, by, 1, &lanes, pack->k[0], 1, &s->disk);
         scatter(count, pack->lane, pack->density, block->density);
     }
 }

@@ -261,5 +261,9 @@ struct mcr_emitters *mcr_emitters_create(struct mcr_arena *arena, const struct m
     for (uint32_t e = 0; e < all->count; e++)
         all->of_primitive[all->emitter[e].primitive] = (int32_t)e;
     set_probabilities(all, scene);
+    for (uint32_t i = 0; i < 128; i++) {
+        double sine;
+        mcr_sincos_turns(i / 128.0, &sine, &all->cosine[i]);
+    }
     return all;
 }

@@ -67,6 +67,7 @@ struct mcr_emitters {
     uint32_t levels;              /* of the search in `from`: 2^levels >= count */
     int32_t *of_primitive;        /* the emitter's number or -1 */
     uint32_t kinds;               /* bit set of those there are */
+    double cosine[128];           /* cos(2 pi i / 128) */
 };
 
 /* NULL when memory is short. Lives in `arena`; immutable. */

@@ -36,11 +36,15 @@ static struct frame enter(struct mcr_batch *batch, const struct mcr_node *node, 
     return was;
 }
 
-static void leave(struct mcr_batch *batch, const struct frame *was)
+/* Returns the status; of a failure, the innermost node is remembered. */
+static int32_t leave(struct mcr_batch *batch, const struct frame *was, int32_t status)
 {
+    if (status && !batch->failed)
+        batch->failed = batch->context.node;
     batch->context.node = was->node;
     batch->context.scratch = was->scratch;
     batch->scratch_used = was->used;
+    return status;
 }
 
 static uint64_t node_bytes(const struct mcr_node *node, uint32_t n)
@@ -54,8 +58,7 @@ int32_t mcr_node_draw(struct mcr_batch *batch, const struct mcr_node *node, uint
 {
     struct frame was = enter(batch, node, node_bytes(node, at->n));
     int32_t status = directions_of(node)->draw(&batch->core->host, &batch->context, node->instance, technique, at, number, out, density);
-    leave(batch, &was);
-    return status;
+    return leave(batch, &was, status);
 }
 
 int32_t mcr_node_density(struct mcr_batch *batch, const struct mcr_node *node, uint32_t technique, const struct mcr_points *at,
@@ -63,8 +66,7 @@ int32_t mcr_node_density(struct mcr_batch *batch, const struct mcr_node *node, u
 {
     struct frame was = enter(batch, node, node_bytes(node, at->n));
     int32_t status = directions_of(node)->density(&batch->core->host, &batch->context, node->instance, technique, at, toward, density);
-    leave(batch, &was);
-    return status;
+    return leave(batch, &was, status);
 }
 
 int32_t mcr_node_draw_emitter(struct mcr_batch *batch, const struct mcr_node *node, uint32_t technique, const struct mcr_points *at,
@@ -72,8 +74,7 @@ int32_t mcr_node_draw_emitter(struct mcr_batch *batch, const struct mcr_node *no
 {
     struct frame was = enter(batch, node, node_bytes(node, at->n));
     int32_t status = directions_of(node)->draw_emitter(&batch->core->host, &batch->context, node->instance, technique, at, number, out, density);
-    leave(batch, &was);
-    return status;
+    return leave(batch, &was, status);
 }
 
 int32_t mcr_node_density_emitter(struct mcr_batch *batch, const struct mcr_node *node, uint32_t technique, const struct mcr_points *at,
@@ -81,8 +82,7 @@ int32_t mcr_node_density_emitter(struct mcr_batch *batch, const struct mcr_node 
 {
     struct frame was = enter(batch, node, node_bytes(node, at->n));
     int32_t status = directions_of(node)->density_emitter(&batch->core->host, &batch->context, node->instance, technique, at, points, density);
-    leave(batch, &was);
-    return status;
+    return leave(batch, &was, status);
 }
 
 static void report(const struct mcr_host *host, struct mcr_context *context, uint32_t severity, const char *text)
@@ -140,8 +140,7 @@ static int32_t child_mass(const struct mcr_host *host, struct mcr_context *conte
     }
     struct frame was = enter(batch, node, node_bytes(node, at->n));
     int32_t status = directions_of(node)->mass(host, context, node->instance, technique, at, mass);
-    leave(batch, &was);
-    return status;
+    return leave(batch, &was, status);
 }
 
 /* The lights' working memory lies on the same stack as that of the nodes. */
@@ -151,8 +150,7 @@ static int32_t child_mass(const struct mcr_host *host, struct mcr_context *conte
     struct frame was = enter(batch, context->node, mcr_emitters_scratch(core->emitters, at->n));        \
     (void)host;                                                                                         \
     core->lights->CALL;                                                                                 \
-    leave(batch, &was);                                                                                 \
-    return MCR_OK
+    return leave(batch, &was, MCR_OK)
 
 static int32_t light_draw(const struct mcr_host *host, struct mcr_context *context, uint32_t by, const struct mcr_points *at,
                           const double *const *number, const struct mcr_directions *out, double *density)
@@ -202,8 +200,7 @@ static int32_t material_draw(const struct mcr_host *host, struct mcr_context *co
     struct mcr_inputs inputs = mcr_group_inputs(batch, group, batch->at.material, batch->running->begin, batch->running->end);
     struct frame was = enter(batch, context->node, mcr_material_bytes(group, at->n));
     int32_t status = group->plugin->draw(host, context, group->instance, &inputs, at, number, out, density);
-    leave(batch, &was);
-    return status;
+    return leave(batch, &was, status);
 }
 
 static int32_t material_density(const struct mcr_host *host, struct mcr_context *context, const struct mcr_points *at,
@@ -216,8 +213,7 @@ static int32_t material_density(const struct mcr_host *host, struct mcr_context 
     struct mcr_inputs inputs = mcr_group_inputs(batch, group, batch->at.material, batch->running->begin, batch->running->end);
     struct frame was = enter(batch, context->node, mcr_material_bytes(group, at->n));
     int32_t status = group->plugin->density(host, context, group->instance, &inputs, at, toward, density);
-    leave(batch, &was);
-    return status;
+    return leave(batch, &was, status);
 }
 
 static uint32_t has_lights(const struct mcr_host *host, struct mcr_context *context)
@@ -238,8 +234,7 @@ int32_t mcr_group_evaluate(struct mcr_batch *batch, const struct mcr_range *rang
     struct mcr_inputs inputs = mcr_group_inputs(batch, group, batch->at.material, range->begin, range->end);
     struct frame was = enter(batch, group->node, mcr_material_bytes(group, at.n));
     int32_t status = group->plugin->evaluate(&batch->core->host, &batch->context, group->instance, &inputs, &at, toward, out);
-    leave(batch, &was);
-    return status;
+    return leave(batch, &was, status);
 }
 
 static int32_t emission(struct mcr_batch *batch, const struct mcr_group *group, const struct mcr_points *at, const struct mcr_inputs *inputs,
@@ -247,8 +242,7 @@ static int32_t emission(struct mcr_batch *batch, const struct mcr_group *group, 
 {
     struct frame was = enter(batch, group->node, mcr_material_bytes(group, at->n));
     int32_t status = group->plugin->emission(&batch->core->host, &batch->context, group->instance, inputs, at, out);
-    leave(batch, &was);
-    return status;
+    return leave(batch, &was, status);
 }
 
 int32_t mcr_group_emission(struct mcr_batch *batch, const struct mcr_range *range, const struct mcr_colours *out)
@@ -272,8 +266,7 @@ static int32_t source_fill(struct mcr_batch *batch, const struct mcr_node *node,
     const struct mcr_numbers_plugin *plugin = (const struct mcr_numbers_plugin *)(const void *)node->descriptor;
     struct frame was = enter(batch, node, plugin->scratch_bytes ? plugin->scratch_bytes(node->instance, samples->n) : 0);
     int32_t status = plugin->fill(&batch->core->host, &batch->context, node->instance, samples, first, count, number);
-    leave(batch, &was);
-    return status;
+    return leave(batch, &was, status);
 }
 
 int32_t mcr_numbers(struct mcr_batch *batch, const struct mcr_paths *paths, uint32_t begin, uint32_t end, uint32_t first, uint32_t count,

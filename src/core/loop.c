@@ -267,7 +267,7 @@ void mcr_batch_run(struct mcr_batch *batch, struct mcr_pass *pass, uint32_t thre
         if (!status)
             status = step(batch, pass);
         if (status)
-            fail(batch, pass, batch->context.node ? batch->context.node : batch->core->scene->sampler->directions, status);
+            fail(batch, pass, batch->failed ? batch->failed : batch->core->scene->sampler->directions, status);
         if (thread == 0 && pass->tick)
             pass->tick(pass->tick_data, pass);
     }

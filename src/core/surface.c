@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Hits become surface points: position, normals, side; path states follow in the same order. Stage file, compiled once per instruction set. */
 #include <math.h>
+#include <string.h>
 
 #include "core/stages.h"
 
@@ -46,9 +47,9 @@ static inline __attribute__((always_inline)) void points(struct mcr_batch *batch
         at->px[k] = x;
         at->py[k] = y;
         at->pz[k] = z;
-        at->nx[k] = at->gx[k] = side * nx;
-        at->ny[k] = at->gy[k] = side * ny;
-        at->nz[k] = at->gz[k] = side * nz;
+        at->gx[k] = side * nx;
+        at->gy[k] = side * ny;
+        at->gz[k] = side * nz;
         at->ox[k] = -dx;
         at->oy[k] = -dy;
         at->oz[k] = -dz;
@@ -110,9 +111,9 @@ static void ellipsoid_point(const struct mcr_accel_shape *shape, const struct mc
     at->py[k] -= step * n[1];
     at->pz[k] -= step * n[2];
     at->side[k] = side;
-    at->nx[k] = at->gx[k] = side * n[0] * inverse;
-    at->ny[k] = at->gy[k] = side * n[1] * inverse;
-    at->nz[k] = at->gz[k] = side * n[2] * inverse;
+    at->gx[k] = side * n[0] * inverse;
+    at->gy[k] = side * n[1] * inverse;
+    at->gz[k] = side * n[2] * inverse;
 }
 
 /* The normal interpolated from the corners by the areas that the point spans with the opposite edges; kept on the geometric normal's side. */
@@ -147,6 +148,19 @@ static void smooth_normal(const struct mcr_triangles *m, uint32_t f, const struc
     at->nz[k] = sign * n[2] / length;
 }
 
+/* Without smooth triangles the shading normals are the geometric ones: the same arrays (batch.c). */
+static void smooth_normals(struct mcr_batch *batch)
+{
+    const struct mcr_triangles *triangles = &batch->core->scene->triangles;
+    const struct mcr_surface_points *at = &batch->at;
+    memcpy(at->nx, at->gx, batch->points * sizeof *at->nx);
+    memcpy(at->ny, at->gy, batch->points * sizeof *at->ny);
+    memcpy(at->nz, at->gz, batch->points * sizeof *at->nz);
+    for (uint32_t k = 0; k < batch->points; k++)
+        if (at->primitive[k] >= triangles->first_primitive)
+            smooth_normal(triangles, (uint32_t)(at->primitive[k] - triangles->first_primitive), at, k);
+}
+
 void MCR_ISA_NAME(mcr_stage_surface)(struct mcr_batch *batch)
 {
     const struct mcr_surfaces *s = &batch->core->surfaces;
@@ -161,8 +175,5 @@ void MCR_ISA_NAME(mcr_stage_surface)(struct mcr_batch *batch)
             if (s->quadric[batch->at.primitive[k]] != UINT32_MAX)
                 ellipsoid_point(&batch->core->accel->shape[s->quadric[batch->at.primitive[k]]], &batch->at, k);
     if (s->smooth)
-        for (uint32_t k = 0; k < batch->points; k++)
-            if (batch->at.primitive[k] >= batch->core->scene->triangles.first_primitive)
-                smooth_normal(&batch->core->scene->triangles, (uint32_t)(batch->at.primitive[k] - batch->core->scene->triangles.first_primitive),
-                              &batch->at, k);
+        smooth_normals(batch);
 }

@@ -49,6 +49,11 @@ struct mcr_target *mcr_target_open(const char *path, char *error, size_t length)
 /* Encodes and writes, checks (fsync, close) and renames. Returns 0, or -1 with result->error set and the old file untouched. Ends the target. */
 int mcr_target_write(struct mcr_target *target, const struct mcr_image *image, const struct mcr_write_options *options,
                      struct mcr_write_result *result);
+/* The same for a text, e.g. a report, under any name: no format is asked for, and "-" may be a terminal. */
+struct mcr_target *mcr_target_open_text(const char *path, char *error, size_t length);
+int mcr_target_write_text(struct mcr_target *target, const char *text, size_t bytes, char *error, size_t length);
+/* 1 if writing the one would overwrite or mix with the other: the same file, however it was spelt, or the same pipe. */
+int mcr_target_same(const struct mcr_target *a, const struct mcr_target *b);
 /* Gives up a target: nothing is left of it. NULL is allowed. */
 void mcr_target_cancel(struct mcr_target *target);
 

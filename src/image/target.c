@@ -27,11 +27,19 @@
 #include <unistd.h>
 
 struct mcr_target {
-    const struct mcr_format *format;
+    const struct mcr_format *format; /* NULL: for a text */
     char *shown;  /* as it was given, for messages */
     int direct;   /* the descriptor to write to, or -1: `name` in `folder` is replaced */
     int folder;   /* opened with O_PATH, so that a change of the current folder does not matter; or -1 */
     char *name;   /* NULL where direct */
+};
+
+/* What is written: an image, or a text. */
+struct content {
+    struct mcr_encoder *encoder; /* NULL for a text */
+    const struct mcr_write_options *options;
+    const char *text;
+    size_t length;
 };
 
 #define TEMPORARY_NAME 256 /* NAME_MAX and the NUL */
@@ -112,15 +120,13 @@ static int open_path(struct mcr_target *target, const char *path, char *error, s
 
 static int open_standard_output(struct mcr_target *target, char *error, size_t length)
 {
-    if (isatty(STDOUT_FILENO)) return mcr_image_fail(error, length, "standard output is a terminal; name a file or redirect it");
+    if (target->format && isatty(STDOUT_FILENO)) return mcr_image_fail(error, length, "standard output is a terminal; name a file or redirect it");
     return open_descriptor(target, STDOUT_FILENO, error, length);
 }
 
-struct mcr_target *mcr_target_open(const char *path, char *error, size_t length)
+static struct mcr_target *target_open(const char *path, const struct mcr_format *format, char *error, size_t length)
 {
     char reason[400] = "its name is empty";
-    const struct mcr_format *format = mcr_format_of_path(path, error, length);
-    if (!format) return NULL;
     struct mcr_target *target = calloc(1, sizeof *target);
     if (target) target->direct = target->folder = -1, target->shown = strdup(path), target->format = format;
     int status = -1;
@@ -133,6 +139,33 @@ struct mcr_target *mcr_target_open(const char *path, char *error, size_t length)
     return NULL;
 }
 
+struct mcr_target *mcr_target_open(const char *path, char *error, size_t length)
+{
+    const struct mcr_format *format = mcr_format_of_path(path, error, length);
+    return format ? target_open(path, format, error, length) : NULL;
+}
+
+struct mcr_target *mcr_target_open_text(const char *path, char *error, size_t length)
+{
+    return target_open(path, NULL, error, length);
+}
+
+/* The file that is there: of a descriptor, or of the name. Returns 0, or -1 without one. */
+static int target_status(const struct mcr_target *target, struct stat *status)
+{
+    return target->name ? fstatat(target->folder, target->name, status, AT_SYMLINK_NOFOLLOW) : fstat(target->direct, status);
+}
+
+int mcr_target_same(const struct mcr_target *a, const struct mcr_target *b)
+{
+    struct stat of_a, of_b;
+    if (a->name && b->name) /* two names of one file are replaced one by one */
+        return !strcmp(a->name, b->name) && !fstat(a->folder, &of_a) && !fstat(b->folder, &of_b) && of_a.st_dev == of_b.st_dev &&
+               of_a.st_ino == of_b.st_ino;
+    return !target_status(a, &of_a) && !target_status(b, &of_b) && of_a.st_dev == of_b.st_dev && of_a.st_ino == of_b.st_ino &&
+           !S_ISCHR(of_a.st_mode);
+}
+
 void mcr_target_cancel(struct mcr_target *target)
 {
     if (!target) return;
@@ -143,16 +176,16 @@ void mcr_target_cancel(struct mcr_target *target)
     free(target);
 }
 
-/* Encodes everything into a descriptor and brings it to the disk. Returns 0, or -1 with the reason. */
-static int encode(const struct mcr_target *target, int fd, struct mcr_encoder *encoder, const struct mcr_write_options *options, char *error,
-                  size_t length)
+/* Writes everything into a descriptor and brings it to the disk. Returns 0, or -1 with the reason. */
+static int put(const struct mcr_target *target, int fd, const struct content *content, char *error, size_t length)
 {
     struct mcr_sink *sink = malloc(sizeof *sink);
     if (!sink) return mcr_image_fail(error, length, "not enough memory");
     mcr_sink_init(sink, fd);
     error[0] = '\0';
-    int status = target->format->module ? mcr_module_write(target->format, encoder, options, sink, error, length)
-                                        : mcr_pnm_write(encoder, sink);
+    int status = !content->encoder         ? mcr_sink_put(sink, content->text, content->length)
+                 : target->format->module ? mcr_module_write(target->format, content->encoder, content->options, sink, error, length)
+                                          : mcr_pnm_write(content->encoder, sink);
     if (!status) status = mcr_sink_flush(sink);
     if (!status && fsync(fd) && errno != EINVAL && errno != ENOTSUP && errno != EROFS) { /* pipes know no fsync */
         sink->error = errno;
@@ -170,8 +203,7 @@ static int take_over(int fd, const struct stat *old, char *error, size_t length)
     return fchmod(fd, old->st_mode & 0777) ? mcr_image_fail(error, length, "%s", strerror(errno)) : 0;
 }
 
-static int replace(const struct mcr_target *target, struct mcr_encoder *encoder, const struct mcr_write_options *options, char *error,
-                   size_t length)
+static int replace(const struct mcr_target *target, const struct content *content, char *error, size_t length)
 {
     char temporary[TEMPORARY_NAME];
     struct stat old;
@@ -180,7 +212,7 @@ static int replace(const struct mcr_target *target, struct mcr_encoder *encoder,
     int fd = create_beside(target->folder, target->name, temporary);
     if (fd < 0) return mcr_image_fail(error, length, "%s", strerror(errno));
     int status = exists ? take_over(fd, &old, error, length) : 0;
-    if (!status) status = encode(target, fd, encoder, options, error, length);
+    if (!status) status = put(target, fd, content, error, length);
     if (close(fd) && !status) status = mcr_image_fail(error, length, "%s", strerror(errno));
     if (!status && renameat(target->folder, temporary, target->folder, target->name))
         status = mcr_image_fail(error, length, "%s", strerror(errno));
@@ -188,10 +220,9 @@ static int replace(const struct mcr_target *target, struct mcr_encoder *encoder,
     return status;
 }
 
-static int write_direct(struct mcr_target *target, struct mcr_encoder *encoder, const struct mcr_write_options *options, char *error,
-                        size_t length)
+static int write_direct(struct mcr_target *target, const struct content *content, char *error, size_t length)
 {
-    int status = encode(target, target->direct, encoder, options, error, length);
+    int status = put(target, target->direct, content, error, length);
     if (close(target->direct) && !status) status = mcr_image_fail(error, length, "%s", strerror(errno));
     target->direct = -1;
     return status;
@@ -206,21 +237,35 @@ static int check_options(const struct mcr_write_options *options, char *error, s
     return 0;
 }
 
+static int target_write(struct mcr_target *target, const struct content *content, char *error, size_t length)
+{
+    return target->name ? replace(target, content, error, length) : write_direct(target, content, error, length);
+}
+
 int mcr_target_write(struct mcr_target *target, const struct mcr_image *image, const struct mcr_write_options *options,
                      struct mcr_write_result *result)
 {
     char reason[300] = "";
     struct mcr_encoder encoder;
+    struct content content = {.encoder = &encoder, .options = options};
     memset(result, 0, sizeof *result);
     int status = check_options(options, reason, sizeof reason);
     if (!status) {
         mcr_encoder_init(&encoder, image, target->format, options->bits, options->exposure);
-        status = target->name ? replace(target, &encoder, options, reason, sizeof reason)
-                              : write_direct(target, &encoder, options, reason, sizeof reason);
+        status = target_write(target, &content, reason, sizeof reason);
         result->overflowed = encoder.overflowed;
         result->not_finite = encoder.not_finite;
     }
     if (status) mcr_image_fail(result->error, sizeof result->error, "cannot write '%.200s': %s", target->shown, reason);
+    mcr_target_cancel(target);
+    return status ? -1 : 0;
+}
+
+int mcr_target_write_text(struct mcr_target *target, const char *text, size_t bytes, char *error, size_t length)
+{
+    char reason[300] = "";
+    int status = target_write(target, &(struct content){.text = text, .length = bytes}, reason, sizeof reason);
+    if (status) mcr_image_fail(error, length, "cannot write '%.200s': %s", target->shown, reason);
     mcr_target_cancel(target);
     return status ? -1 : 0;
 }

@@ -255,7 +255,7 @@ struct mcr_value mcr_function(struct mcr_parser *parser, const struct mcr_token 
 {
     struct mcr_place place = mcr_token_place(parser, word), open = mcr_token_place(parser, &parser->token);
     struct mcr_value argument[3];
-    int function = function_of(word), good = 1, more;
+    int function = function_of(word), good = 1, more, after;
     uint32_t count = 0;
     double folded = 0;
 
@@ -263,9 +263,12 @@ struct mcr_value mcr_function(struct mcr_parser *parser, const struct mcr_token 
         return mcr_error_value(place);
     mcr_next(parser);
     parser->brackets++;
-    more = parser->token.kind != ')';
-    if (!more)
+    if (parser->token.kind == ')') {
         mcr_next(parser);
+        more = 0;
+    } else {
+        good = more = mcr_element_follows(parser, open);
+    }
     while (more) {
         struct mcr_value value = mcr_expression(parser);
         if (parser->panic)
@@ -275,17 +278,19 @@ struct mcr_value mcr_function(struct mcr_parser *parser, const struct mcr_token 
             argument[count] = value;
         folded = count == 0 || (function == MIN ? value.number < folded : value.number > folded) ? value.number : folded;
         count++;
-        more = mcr_separator(parser, open) == MCR_LIST_MORE;
+        after = mcr_separator(parser, open);
+        more = after == MCR_LIST_MORE;
+        good &= after != MCR_LIST_SHORT;
     }
     parser->brackets--;
     mcr_leave(parser);
     place = mcr_span(parser, &place);
-    if (parser->panic)
+    if (parser->panic || !good)
         return mcr_error_value(place);
     if (count < functions[function].least || count > functions[function].most) {
         mcr_report(parser->diagnostics, MCR_ERROR, place, "'%s' takes %u argument%s%s, got %u", functions[function].word, functions[function].least,
                    functions[function].least == 1 ? "" : "s", functions[function].most == UINT32_MAX ? " or more" : "", count);
         return mcr_error_value(place);
     }
-    return good ? apply(parser, function, place, argument, folded) : mcr_error_value(place);
+    return apply(parser, function, place, argument, folded);
 }

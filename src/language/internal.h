@@ -192,6 +192,8 @@ void mcr_plain(struct mcr_parser *parser, struct mcr_value *value);
 /* After an element of a list opened at `open`: MORE, or DONE with the bracket taken or, after an error, missing; SHORT: an element is missing. */
 enum { MCR_LIST_MORE, MCR_LIST_DONE, MCR_LIST_SHORT };
 int mcr_separator(struct mcr_parser *parser, struct mcr_place open);
+/* Behind the '(' at `open` or a ',': whether an element stands here; if the text or the block ends instead, that is reported. */
+int mcr_element_follows(struct mcr_parser *parser, struct mcr_place open);
 
 /* expression.c */
 struct mcr_value mcr_expression(struct mcr_parser *parser);

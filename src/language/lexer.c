@@ -58,7 +58,7 @@ static void __attribute__((format(printf, 5, 6))) complain(struct mcr_parser *pa
     char text[300];
     va_list arguments;
 
-    if (parser->quiet || at < parser->judged)
+    if (parser->quiet || at < parser->judged || mcr_diagnostics_errors(parser->diagnostics) > MCR_MISTAKE_LIMIT)
         return;
     parser->judged = at + length;
     va_start(arguments, format);
@@ -176,6 +176,15 @@ static void evaluate(struct mcr_parser *parser, const struct mcr_lexer *lexer, s
     token->bad = 1;
     if (token->text_length > MCR_DIGIT_LIMIT) {
         complain(parser, lexer, token->text, token->text_length, "a number of %u bytes, at most %u are allowed", token->text_length, MCR_DIGIT_LIMIT);
+        return;
+    }
+    if (token->text_length < 16 && !memchr(token->text, '.', token->text_length) && !memchr(token->text, 'e', token->text_length) &&
+        !memchr(token->text, 'E', token->text_length)) { /* most numbers of a mesh; exact */
+        uint64_t whole = 0;
+        for (uint32_t i = 0; i < token->text_length; i++)
+            whole = whole * 10 + (uint64_t)(token->text[i] - '0');
+        token->number = (double)whole;
+        token->bad = 0;
         return;
     }
     memcpy(copy, token->text, token->text_length);

@@ -156,6 +156,7 @@ static int begins_item(struct mcr_parser *parser, unsigned inside)
 void mcr_recover(struct mcr_parser *parser, unsigned inside)
 {
     uint32_t depth = parser->panic_brackets;
+    int judging = 1; /* until a bracket turns out not to be closed: looking ahead from each of many would take for ever */
     parser->panic = 0;
     if (depth && !mcr_brackets_close(parser, depth))
         depth = 0;
@@ -166,9 +167,11 @@ void mcr_recover(struct mcr_parser *parser, unsigned inside)
         }
         if (parser->token.kind == TOKEN_WORD && depth == 0 && begins_item(parser, inside))
             break;
-        if (parser->token.kind == '(')
-            depth += depth > 0 || mcr_brackets_close(parser, 0);
-        else if (parser->token.kind == ')' && depth)
+        if (parser->token.kind == '(') {
+            judging = judging && (depth > 0 || mcr_brackets_close(parser, 0));
+            depth += depth > 0 || judging;
+        }
+        if (parser->token.kind == ')' && depth)
             depth--;
         mcr_let_use(parser, &parser->token);
         mcr_next(parser);

@@ -38,6 +38,24 @@ void mcr_plain(struct mcr_parser *parser, struct mcr_value *value)
     }
 }
 
+static void not_closed(struct mcr_parser *parser, struct mcr_place open, const char *expected)
+{
+    char text[80];
+    if (parser->fatal)
+        return;
+    mcr_report(parser->diagnostics, MCR_ERROR, open, "'(' is not closed");
+    mcr_report(parser->diagnostics, MCR_NOTE, mcr_token_place(parser, &parser->token), "expected %s before %s", expected,
+               mcr_token_described(&parser->token, text));
+}
+
+int mcr_element_follows(struct mcr_parser *parser, struct mcr_place open)
+{
+    if (parser->token.kind != TOKEN_END && parser->token.kind != '}')
+        return 1;
+    not_closed(parser, open, "a value");
+    return 0;
+}
+
 int mcr_separator(struct mcr_parser *parser, struct mcr_place open)
 {
     struct mcr_place here = mcr_token_place(parser, &parser->token);
@@ -50,22 +68,19 @@ int mcr_separator(struct mcr_parser *parser, struct mcr_place open)
     if (parser->token.kind == ',') {
         mcr_next(parser);
         if (parser->token.kind != ')')
-            return MCR_LIST_MORE;
+            return mcr_element_follows(parser, open) ? MCR_LIST_MORE : MCR_LIST_SHORT;
         mcr_report(parser->diagnostics, MCR_ERROR, here, "expected a value after ',', found ')'");
         mcr_next(parser);
         return MCR_LIST_SHORT;
     }
-    if (parser->fatal)
-        return MCR_LIST_DONE;
-    if (mcr_brackets_close(parser, 1)) {
+    if (!parser->fatal && mcr_brackets_close(parser, 1)) {
         mcr_report(parser->diagnostics, MCR_ERROR, here, "expected ',' or ')', found %s", mcr_token_described(&parser->token, text));
         if (mcr_begins_value(&parser->token))
             return MCR_LIST_MORE;
         mcr_panic(parser);
         return MCR_LIST_DONE;
     }
-    mcr_report(parser->diagnostics, MCR_ERROR, open, "'(' is not closed");
-    mcr_report(parser->diagnostics, MCR_NOTE, here, "expected ',' or ')' before %s", mcr_token_described(&parser->token, text));
+    not_closed(parser, open, "',' or ')'");
     return MCR_LIST_DONE;
 }
 
@@ -86,6 +101,8 @@ static struct mcr_value brackets(struct mcr_parser *parser)
         mcr_next(parser);
         mcr_report(parser->diagnostics, MCR_ERROR, mcr_span(parser, &open), "brackets with nothing in them, expected a value");
         good = more = 0;
+    } else {
+        good = more = mcr_element_follows(parser, open);
     }
     while (more) {
         struct mcr_value value = mcr_expression(parser);
@@ -211,7 +228,7 @@ static struct mcr_value call(struct mcr_parser *parser, const struct mcr_token *
     struct mcr_place open = mcr_token_place(parser, &parser->token), place = mcr_token_place(parser, word);
     struct mcr_value result = { .kind = MCR_VALUE_CALL, .place = place, .text = mcr_token_text(parser, word) };
     struct mcr_vector *vector;
-    int good = 1, more;
+    int good = 1, more, after;
 
     if (!mcr_enter(parser, open))
         return mcr_error_value(place);
@@ -219,9 +236,12 @@ static struct mcr_value call(struct mcr_parser *parser, const struct mcr_token *
     vector->count = 0;
     mcr_next(parser);
     parser->brackets++;
-    more = parser->token.kind != ')';
-    if (!more)
+    if (parser->token.kind == ')') {
         mcr_next(parser);
+        more = 0;
+    } else {
+        good = more = mcr_element_follows(parser, open);
+    }
     while (more) {
         struct mcr_argument next;
         if (++parser->arguments > MCR_ARGUMENT_LIMIT) {
@@ -233,7 +253,9 @@ static struct mcr_value call(struct mcr_parser *parser, const struct mcr_token *
         good &= argument(parser, &result, &next);
         if (parser->panic || !mcr_vector_add(parser, vector, &next, sizeof next))
             break;
-        more = mcr_separator(parser, open) == MCR_LIST_MORE;
+        after = mcr_separator(parser, open);
+        more = after == MCR_LIST_MORE;
+        good &= after != MCR_LIST_SHORT;
     }
     parser->brackets--;
     mcr_leave(parser);

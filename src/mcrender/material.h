@@ -21,7 +21,8 @@ extern "C" {
 #define MCR_MATERIAL_EMITS_BACK 16u
 
 /* Flags of descriptors. */
-#define MCR_MATERIAL_STATELESS 1u /* operations read mcr_inputs and nothing else: one call may hold points of several materials of this plugin */
+/* Operations read mcr_inputs, not the instance: one call may hold points of several materials of this plugin (any stride may be 1 then). */
+#define MCR_MATERIAL_STATELESS 1u
 
 /* What the host has to know of a material before the first ray. */
 struct mcr_material_traits {

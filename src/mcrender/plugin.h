@@ -9,7 +9,7 @@
  *   types      Only uint32_t, int32_t, uint64_t, double, char and pointers cross the boundary. 64-bit hosts only.
  *   growth     Every structure starts with `size`, the number of bytes its writer knows of. A member exists only
  *              if it lies within `size`. Structures grow at the end and never change otherwise within a major version.
- *   batches    Operations work on n lanes, all live. Arrays are structure-of-arrays, 64-byte aligned and padded to a
+ *   batches    Operations work on n lanes, all live. Arrays are structure-of-arrays, 64-byte aligned (those of 32-bit numbers 32-byte) and padded to a
  *              multiple of 8 doubles: the padding may be read, never relied on and never written. Inputs and outputs do not overlap.
  *   status     Operations return 0 or a negative MCR_E_*; a failure stops the render. Say why with host->report.
  *   threads    `create` runs once on the main thread and returns something immutable. Every other operation is

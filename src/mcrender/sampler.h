@@ -183,7 +183,7 @@ struct mcr_directions_plugin {
     int32_t (*mass)(const struct mcr_host *host, struct mcr_context *context, const void *instance, uint32_t technique,
                     const struct mcr_points *at, double *mass);
 
-    /* Emitter techniques. Draws a point on an emitter and, where `density` is not NULL, its density over solid angle. NULL if there is none. */
+    /* Emitter techniques. Draws a point on an emitter; where `density` is not NULL, also its density over solid angle. NULL if there is none. */
     int32_t (*draw_emitter)(const struct mcr_host *host, struct mcr_context *context, const void *instance, uint32_t technique,
                             const struct mcr_points *at, const double *const *number, const struct mcr_emitter_points *out,
                             double *density);

@@ -9,6 +9,9 @@
 static const char *const kind_title[] = {[MCR_KIND_DIRECTIONS] = "samplers: directions",
                                          [MCR_KIND_NUMBERS] = "samplers: numbers (outermost)",
                                          [MCR_KIND_MATERIAL] = "materials"};
+static const char *const kind_name[] = {[MCR_KIND_DIRECTIONS] = "sampler, draws directions",
+                                        [MCR_KIND_NUMBERS] = "sampler, supplies numbers and stands outside of those that draw directions",
+                                        [MCR_KIND_MATERIAL] = "material"};
 static const char *const type_title[] = {
     [MCR_TYPE_NUMBER] = "number", [MCR_TYPE_INTEGER] = "whole number", [MCR_TYPE_COLOUR] = "colour", [MCR_TYPE_CHOICE] = "word"};
 
@@ -54,7 +57,7 @@ static void print_parameter(FILE *to, const struct mcr_parameter *parameter)
 {
     char text[160], word[MCR_MAX_WORD + 1];
 
-    fprintf(to, "\n  %s: %s", parameter->name, type_title[parameter->type]);
+    fprintf(to, "    %s: %s", parameter->name, type_title[parameter->type]);
     if (parameter->type == MCR_TYPE_CHOICE) {
         uint32_t count = mcr_choice_count(parameter->choices);
 
@@ -72,7 +75,7 @@ static void print_parameter(FILE *to, const struct mcr_parameter *parameter)
         mcr_value_text(parameter, parameter->fallback, text, sizeof text);
         fprintf(to, "; default %s", text);
     }
-    fprintf(to, "%s\n      %s\n", parameter->flags & MCR_PARAMETER_VARYING ? "; may vary over the surface" : "", parameter->summary);
+    fprintf(to, "%s\n        %s\n", parameter->flags & MCR_PARAMETER_VARYING ? "; may vary over the surface" : "", parameter->summary);
 }
 
 static void describe(FILE *to, const struct mcr_loaded *loaded)
@@ -80,12 +83,12 @@ static void describe(FILE *to, const struct mcr_loaded *loaded)
     const struct mcr_descriptor *descriptor = loaded->descriptor;
 
     fprintf(to, "%s: %s\n  kind: %s\n  version: %s\n  licence: %s\n  file: %s\n", descriptor->name, descriptor->summary,
-            kind_title[descriptor->kind], descriptor->version, descriptor->licence, loaded->path);
+            kind_name[descriptor->kind], descriptor->version, descriptor->licence, loaded->path);
     if (loaded->hides)
         fprintf(to, "  hides: %s\n", loaded->hides);
     fprintf(to, "  instruction sets: ");
     print_sets(to, loaded->isa_mask);
-    fprintf(to, "\n\n%s\n", descriptor->parameter_count ? "parameters" : "no parameters");
+    fprintf(to, "\n  %s\n", descriptor->parameter_count ? "parameters:" : "no parameters");
     for (uint32_t k = 0; k < descriptor->parameter_count; k++)
         print_parameter(to, mcr_descriptor_parameter(descriptor, k));
 }

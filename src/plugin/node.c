@@ -30,7 +30,12 @@ void mcr_node_failed(const struct mcr_node *node, struct mcr_diagnostics *diagno
 int mcr_node_instantiate(struct mcr_node *node, struct mcr_diagnostics *diagnostics, uint32_t planned, int has_lights)
 {
     struct mcr_context context = {.node = node, .diagnostics = diagnostics, .has_lights = has_lights != 0};
-    struct mcr_creation with = {sizeof with, node->child_count, &node->values, (const struct mcr_child *const *)node->child, node->weight, planned, 0};
+    struct mcr_creation with = {.size = sizeof with,
+                                .child_count = node->child_count,
+                                .values = &node->values,
+                                .child = (const struct mcr_child *const *)node->child,
+                                .weight = node->weight,
+                                .spp = planned};
     uint32_t errors = mcr_diagnostics_errors(diagnostics);
     const struct mcr_host *host = mcr_creation_host();
     int32_t status;
@@ -103,22 +108,23 @@ int mcr_node_techniques(struct mcr_node *node, struct mcr_diagnostics *diagnosti
         return -1;
     }
     if (count == 0 || count > MCR_MAX_TECHNIQUES) {
-        mcr_report(diagnostics, MCR_ERROR, node->place, "'%s' tells of %u techniques, expected 1 to %u: a mistake in the plugin", plugin->head.name,
-                   count, MCR_MAX_TECHNIQUES);
+        mcr_report(diagnostics, MCR_ERROR, node->place, "'%s' tells of %u techniques, expected 1 to %u: a mistake in the plugin",
+                   plugin->head.name, count, MCR_MAX_TECHNIQUES);
         return -1;
     }
     for (uint32_t t = 0; t < count; t++) {
         const char *mistake = technique_mistake(plugin, &node->technique[t]);
 
         if (mistake) {
-            mcr_report(diagnostics, MCR_ERROR, node->place, "technique %u of '%s' %s: a mistake in the plugin", t + 1, plugin->head.name, mistake);
+            mcr_report(diagnostics, MCR_ERROR, node->place, "technique %u of '%s' %s: a mistake in the plugin", t + 1, plugin->head.name,
+                       mistake);
             return -1;
         }
         continuing += node->technique[t].continues;
     }
     if (continuing > 1) {
-        mcr_report(diagnostics, MCR_ERROR, node->place, "%u techniques of '%s' continue the path, expected at most one: a mistake in the plugin",
-                   continuing, plugin->head.name);
+        mcr_report(diagnostics, MCR_ERROR, node->place,
+                   "%u techniques of '%s' continue the path, expected at most one: a mistake in the plugin", continuing, plugin->head.name);
         return -1;
     }
     node->technique_count = count;
@@ -128,8 +134,8 @@ int mcr_node_techniques(struct mcr_node *node, struct mcr_diagnostics *diagnosti
 /* ---- materials ---- */
 
 /* The block's content as settings; nested blocks are errors. NULL after an error of memory. */
-static struct mcr_setting *read_block(struct mcr_arena *arena, struct mcr_diagnostics *diagnostics, const struct mcr_item *block, uint32_t *count,
-                                      int *wrong)
+static struct mcr_setting *read_block(struct mcr_arena *arena, struct mcr_diagnostics *diagnostics, const struct mcr_item *block,
+                                      uint32_t *count, int *wrong)
 {
     struct mcr_setting *setting = mcr_arena_alloc(arena, block->count, sizeof *setting);
 

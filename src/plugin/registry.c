@@ -150,6 +150,12 @@ static const struct mcr_loaded *find_loaded(const struct mcr_registry *registry,
     return NULL;
 }
 
+/* Whether two descriptors are the same word of the same kind; false for kinds of later versions. */
+static int same_word(const struct mcr_descriptor *a, const struct mcr_descriptor *b)
+{
+    return mcr_descriptor_known(a) && mcr_descriptor_known(b) && a->kind == b->kind && !strcmp(a->name, b->name);
+}
+
 /* Adds the baseline descriptors that this file may serve. Returns 0, or -1 when memory is short. */
 static int add_loaded(struct mcr_registry *registry, const struct file *file)
 {
@@ -159,11 +165,12 @@ static int add_loaded(struct mcr_registry *registry, const struct file *file)
         const struct mcr_descriptor *descriptor = plugin->list[k];
         struct mcr_loaded entry = {descriptor, file->path, NULL, 0};
 
-        if (!mcr_descriptor_known(descriptor) || descriptor->isa != MCR_ISA_BASELINE || (file->word && strcmp(file->word, descriptor->name)) ||
+        if (!mcr_descriptor_known(descriptor) || descriptor->isa != MCR_ISA_BASELINE ||
+            (file->word && strcmp(file->word, descriptor->name)) ||
             find_loaded(registry, MCR_KIND_MASK(descriptor->kind), descriptor->name))
             continue;
         for (uint32_t j = 0; j < plugin->count; j++)
-            if (mcr_descriptor_known(plugin->list[j]) && plugin->list[j]->kind == descriptor->kind && !strcmp(plugin->list[j]->name, descriptor->name))
+            if (same_word(descriptor, plugin->list[j]))
                 entry.isa_mask |= 1u << plugin->list[j]->isa;
         if (registry->loaded_count == registry->loaded_room) {
             uint32_t room = registry->loaded_room ? 2 * registry->loaded_room : 16;
@@ -359,8 +366,8 @@ const struct mcr_descriptor *mcr_registry_find(struct mcr_registry *registry, ui
     }
     other = find_loaded(registry, UINT32_MAX, word);
     if (other)
-        mcr_report(registry->diagnostics, MCR_ERROR, place, "'%s' is a %s, expected a %s", word, kind_name(MCR_KIND_MASK(other->descriptor->kind)),
-                   kind_name(kind_mask));
+        mcr_report(registry->diagnostics, MCR_ERROR, place, "'%s' is a %s, expected a %s", word,
+                   kind_name(MCR_KIND_MASK(other->descriptor->kind)), kind_name(kind_mask));
     else
         report_unknown(registry, kind_mask, word, place);
     return NULL;

@@ -34,11 +34,13 @@ static int read_weight(struct builder *builder, const struct mcr_argument *argum
         return 0;
     }
     if (value->kind == MCR_VALUE_NUMBER && parent->kind != MCR_KIND_DIRECTIONS)
-        mcr_report(builder->diagnostics, MCR_ERROR, argument->weight.place, "the sampler inside '%s' has a weight, expected none", parent->name);
+        mcr_report(builder->diagnostics, MCR_ERROR, argument->weight.place, "the sampler inside '%s' has a weight, expected none",
+                   parent->name);
     else if (value->kind == MCR_VALUE_NUMBER)
         mcr_report(builder->diagnostics, MCR_ERROR, argument->weight.place, "this weight is %.10g, expected at least 0", value->number);
     else if (value->kind != MCR_VALUE_ERROR)
-        mcr_report(builder->diagnostics, MCR_ERROR, argument->weight.place, "this weight is %s, expected a number", mcr_value_kind_name(value));
+        mcr_report(builder->diagnostics, MCR_ERROR, argument->weight.place, "this weight is %s, expected a number",
+                   mcr_value_kind_name(value));
     return -1;
 }
 
@@ -59,8 +61,9 @@ static int read_arguments(struct builder *builder, const struct mcr_value *value
         }
         if (++children > MCR_MAX_CHILDREN) {
             if (children == MCR_MAX_CHILDREN + 1)
-                mcr_report(builder->diagnostics, MCR_ERROR, argument->value.place, "'%s' has more than %u samplers inside it, expected at most %u",
-                           node->descriptor->name, MCR_MAX_CHILDREN, MCR_MAX_CHILDREN);
+                mcr_report(builder->diagnostics, MCR_ERROR, argument->value.place,
+                           "'%s' has more than %u samplers inside it, expected at most %u", node->descriptor->name, MCR_MAX_CHILDREN,
+                           MCR_MAX_CHILDREN);
             wrong = 1;
             continue;
         }
@@ -71,8 +74,9 @@ static int read_arguments(struct builder *builder, const struct mcr_value *value
             node->child[node->child_count++] = child;
     }
     if (node->descriptor->kind == MCR_KIND_NUMBERS && children != 1) {
-        mcr_report(builder->diagnostics, MCR_ERROR, node->place, "'%s' supplies numbers and has %u samplers inside it, expected one, as in %s(cosine)",
-                   node->descriptor->name, children, node->descriptor->name);
+        mcr_report(builder->diagnostics, MCR_ERROR, node->place,
+                   "'%s' supplies numbers and has %u samplers inside it, expected one, as in %s(cosine)", node->descriptor->name, children,
+                   node->descriptor->name);
         wrong = 1;
     }
     return wrong ? -1 : 0;
@@ -94,7 +98,8 @@ static const struct mcr_descriptor *find_word(struct builder *builder, const str
     }
     if (depth > MCR_MAX_TREE_DEPTH || builder->nodes >= MOST_NODES) {
         if (depth > MCR_MAX_TREE_DEPTH)
-            mcr_report(builder->diagnostics, MCR_ERROR, value->place, "samplers are nested too deeply, expected at most %u levels", MCR_MAX_TREE_DEPTH);
+            mcr_report(builder->diagnostics, MCR_ERROR, value->place, "samplers are nested too deeply, expected at most %u levels",
+                       MCR_MAX_TREE_DEPTH);
         else if (builder->nodes++ == MOST_NODES)
             mcr_report(builder->diagnostics, MCR_ERROR, value->place, "too many samplers in one expression, expected at most %u", MOST_NODES);
         return NULL;
@@ -102,8 +107,8 @@ static const struct mcr_descriptor *find_word(struct builder *builder, const str
     builder->nodes++;
     descriptor = mcr_registry_find(builder->registry, mask, value->text, value->place, path);
     if (descriptor && parent && parent->kind == MCR_KIND_DIRECTIONS && descriptor->kind == MCR_KIND_NUMBERS) {
-        mcr_report(builder->diagnostics, MCR_ERROR, value->place, "'%s' supplies numbers and stands outside of all directions, as in %s(%s(...))",
-                   value->text, value->text, parent->name);
+        mcr_report(builder->diagnostics, MCR_ERROR, value->place,
+                   "'%s' supplies numbers and stands outside of all directions, as in %s(%s(...))", value->text, value->text, parent->name);
         return NULL;
     }
     return descriptor;
@@ -184,8 +189,8 @@ static int split(struct mcr_diagnostics *diagnostics, struct mcr_sampler *sample
             uint32_t left = group[g].count - done[g], count = left ? plugin->supplies(root->instance, group[g].first + done[g], left) : 0;
 
             if (count > left) {
-                mcr_report(diagnostics, MCR_ERROR, root->place, "'%s' would supply %u numbers of %u: a mistake in the plugin", plugin->head.name,
-                           count, left);
+                mcr_report(diagnostics, MCR_ERROR, root->place, "'%s' would supply %u numbers of %u: a mistake in the plugin",
+                           plugin->head.name, count, left);
                 return -1;
             }
             done[g] += count;
@@ -235,7 +240,8 @@ struct mcr_sampler *mcr_sampler_create(struct mcr_arena *arena, struct mcr_diagn
         mcr_node_destroy(root, 1);
         return NULL;
     }
-    if (split(diagnostics, sampler, root) || check_root(diagnostics, sampler->directions) || !(sampler->independent = build_independent(&builder, expression->place))) {
+    if (split(diagnostics, sampler, root) || check_root(diagnostics, sampler->directions) ||
+        !(sampler->independent = build_independent(&builder, expression->place))) {
         mcr_node_destroy(root, 1);
         return NULL;
     }

@@ -202,7 +202,8 @@ static int check_descriptor(struct check *check)
         return fail(check, "the table of its %u parameters is missing", descriptor->parameter_count);
     if (descriptor->parameter_count && (descriptor->parameters->size < sizeof(struct mcr_parameter) || descriptor->parameters->size > 4096 ||
                                         descriptor->parameters->size % sizeof(double)))
-        return fail(check, "its parameters have %u bytes each, expected at least %zu", descriptor->parameters->size, sizeof(struct mcr_parameter));
+        return fail(check, "its parameters have %u bytes each, expected at least %zu", descriptor->parameters->size,
+                    sizeof(struct mcr_parameter));
     for (uint32_t k = 0; k < descriptor->parameter_count; k++)
         if (check_parameter(check, k))
             return -1;

@@ -95,7 +95,8 @@ static int check_choice(struct mcr_diagnostics *diagnostics, const struct mcr_pa
         word[k] = words[k];
         mcr_text_list(list, sizeof list, words[k], k, count);
     }
-    mcr_report(diagnostics, MCR_ERROR, value->place, "unknown word '%s' for '%s' of '%s', expected %s", value->text, parameter->name, of, list);
+    mcr_report(diagnostics, MCR_ERROR, value->place, "unknown word '%s' for '%s' of '%s', expected %s", value->text, parameter->name, of,
+               list);
     near = mcr_nearest_word(value->text, word, count < MCR_MAX_CHOICES ? count : MCR_MAX_CHOICES);
     if (near)
         mcr_report(diagnostics, MCR_NOTE, value->place, "did you mean '%s'?", near);
@@ -144,7 +145,8 @@ int mcr_value_check(struct mcr_diagnostics *diagnostics, const struct mcr_parame
 }
 
 /* The parameter's place in the table, or parameter_count after an error. */
-static uint32_t find_parameter(struct mcr_diagnostics *diagnostics, const struct mcr_descriptor *descriptor, const struct mcr_setting *setting)
+static uint32_t find_parameter(struct mcr_diagnostics *diagnostics, const struct mcr_descriptor *descriptor,
+                               const struct mcr_setting *setting)
 {
     const char *word[MCR_MAX_PARAMETERS], *near;
     uint32_t k, count = descriptor->parameter_count;
@@ -184,7 +186,8 @@ int mcr_values_read(struct mcr_arena *arena, struct mcr_diagnostics *diagnostics
         if (k == parameters) {
             wrong = -1;
         } else if (given[k]) {
-            mcr_report(diagnostics, MCR_ERROR, setting[s].place, "'%s' of '%s' is given twice, expected once", setting[s].name, descriptor->name);
+            mcr_report(diagnostics, MCR_ERROR, setting[s].place, "'%s' of '%s' is given twice, expected once", setting[s].name,
+                       descriptor->name);
             mcr_report(diagnostics, MCR_NOTE, first[k], "the first one is here");
             wrong = -1;
         } else {

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 # Scenes with a known answer as texts in $TMPDIR; sourced. Answers: computed in high precision, cross-checked by quadrature.
 
-# head CAMERA: what all have: emitters of radiance 1, `rho` the receiver's albedo, one scattering event
-head()
+# preamble CAMERA: what all have: emitters of radiance 1, `rho` the receiver's albedo, one scattering event
+preamble()
 {
     cat <<TEXT
 mcrender 1
@@ -18,7 +18,7 @@ receiver()
 {
     local name=$1 from=$2
     shift 2
-    { head "camera perspective { from $from   to (0, 0, 0)   up (0.1, 0.9, 0.3)   fov 1e-9 }"
+    { preamble "camera perspective { from $from   to (0, 0, 0)   up (0.1, 0.9, 0.3)   fov 1e-9 }"
       cat <<TEXT
 material receiver lambert { albedo rho }
 material lamp emitter { radiance 1 }
@@ -35,7 +35,7 @@ closed()
 {
     local name=$1
     shift
-    { head "camera perspective { from (0.1, -0.2, 0.15)   to (1, 0.5, -0.7)   fov 70 }"
+    { preamble "camera perspective { from (0.1, -0.2, 0.15)   to (1, 0.5, -0.7)   fov 70 }"
       cat <<TEXT
 material wall emitter { radiance 1   albedo rho   sides two }
 $*

@@ -6,6 +6,7 @@
 #include "../tap.h"
 #include "base/cpu.h"
 #include "plugin/describe.h"
+#include "plugin/node.h"
 #include "plugin/registry.h"
 
 #include <stdlib.h>
@@ -35,11 +36,12 @@ static const char source[] =
     "#ifndef PARAMETERS\n#define PARAMETERS 0\n#define TABLE {0}\n#endif\n"
     "#ifndef SUMMARY\n#define SUMMARY \"for tests\"\n#endif\n"
     "#ifndef DRAW\n#define DRAW draw\n#endif\n"
+    "#ifndef TECHNIQUE\n#define TECHNIQUE\n#endif\n"
     "#define P(n, ...) {.size = sizeof(struct mcr_parameter), .type = MCR_TYPE_NUMBER, .name = n, .unit = \"\", .summary = \"A number.\", .max = 1, __VA_ARGS__}\n"
     "#define MORE(isa) struct mcr_directions_plugin more = {.head = {sizeof more, MCR_KIND_DIRECTIONS, isa, 0, \"probe\", \"1\", \"MIT\", \"more\", 0}, create, 0, techniques, 0, draw, density}\n"
     "static int32_t create(const struct mcr_host *h, struct mcr_context *c, const struct mcr_creation *w, void **i) { (void)h; (void)c; (void)w; *i = 0; return 0; }\n"
     "static int32_t techniques(const struct mcr_host *h, struct mcr_context *c, const void *i, struct mcr_technique *t, uint32_t *n)\n"
-    "{ (void)h; (void)c; (void)i; t->kind = 1; t->continues = 1; t->covers = 1; t->dimensions = 2; *n = 1; return 0; }\n"
+    "{ (void)h; (void)c; (void)i; t->kind = 1; t->continues = 1; t->covers = 1; t->dimensions = 2; *n = 1; TECHNIQUE; return 0; }\n"
     "static int32_t draw(const struct mcr_host *h, struct mcr_context *c, const void *i, uint32_t t, const struct mcr_points *at, const double *const *u,\n"
     "  const struct mcr_directions *o, double *d) { (void)h; (void)c; (void)i; (void)t; (void)at; (void)u; (void)o; (void)d; return -4; }\n"
     "static int32_t density(const struct mcr_host *h, struct mcr_context *c, const void *i, uint32_t t, const struct mcr_points *at,\n"
@@ -351,6 +353,28 @@ static void test_sets(void)
     free(said);
 }
 
+/* A sampler whose techniques are wrong for the root of an expression. */
+static void test_root(const char *folder, const char *definitions, const char *says)
+{
+    struct mcr_diagnostics *diagnostics = mcr_diagnostics_create();
+    struct mcr_arena *arena = mcr_arena_create(0);
+    struct mcr_value value = {.kind = MCR_VALUE_NAME, .text = "probe"};
+    struct mcr_registry *registry;
+    char *text;
+
+    compile(folder, "probe", definitions);
+    search(folder, folder);
+    registry = mcr_registry_create(diagnostics, 0, NULL);
+    ok(!mcr_sampler_create(arena, diagnostics, registry, &value, 1, 0), "refused as a sampler: %s", folder);
+    text = recorded(diagnostics);
+    if (!ok(strstr(text, says) && mcr_diagnostics_errors(diagnostics) == 1, "  %s", says))
+        printf("# %s", text);
+    free(text);
+    mcr_registry_destroy(registry);
+    mcr_diagnostics_destroy(diagnostics);
+    mcr_arena_destroy(arena);
+}
+
 static void test_describe(void)
 {
     struct mcr_diagnostics *diagnostics = mcr_diagnostics_create();
@@ -377,7 +401,7 @@ static void test_describe(void)
     memory = open_memstream(&text, &length);
     ok(mcr_describe_word(memory, registry, "probe") == 0, "a word");
     fflush(memory);
-    ok(strstr(text, "  depth: number, 0 to 1 m; default 0.5\n      A number.\n") && strstr(text, "  way: word, in or out; required\n") &&
+    ok(strstr(text, "    depth: number, 0 to 1 m; default 0.5\n        A number.\n") && strstr(text, "    way: word, in or out; required\n") &&
            strstr(text, "  licence: MIT\n"),
        "its documentation");
     ok(mcr_describe_word(memory, registry, "nothing") == -1 && mcr_diagnostics_errors(diagnostics) == 1, "an unknown word");
@@ -407,6 +431,11 @@ int main(void)
     test_words();
     test_no_files();
     test_sets();
+    test_root("dimensions", "-DTECHNIQUE='t->dimensions = 17'", "this sampler takes 17 numbers at each bounce, expected at most 16");
+    test_root("overflow", "-DTECHNIQUE='t->dimensions = 0xffffffffu; t[1] = t[0]; t[1].dimensions = 2; t[1].continues = 0; *n = 2'",
+              "this sampler takes 4294967297 numbers at each bounce, expected at most 16");
+    test_root("ends", "-DTECHNIQUE='t->continues = 0'", "no technique of 'probe' continues the path, expected one that draws directions");
+    test_root("alone", "", "unknown sampler 'independent'");
     test_describe();
     return tap_done();
 }

@@ -206,6 +206,48 @@ static void test_places(void)
     plugin->destroy(instance);
 }
 
+/* The inverse of mcr_mix64. */
+static uint64_t unmix(uint64_t x)
+{
+    uint64_t a = 1, b = 1;
+
+    for (int k = 0; k < 6; k++) { /* Newton's iteration for inverses modulo 2^64 */
+        a *= 2 - UINT64_C(0x94d049bb133111eb) * a;
+        b *= 2 - UINT64_C(0xbf58476d1ce4e5b9) * b;
+    }
+    x = x ^ (x >> 31) ^ (x >> 62);
+    x = a * x;
+    x = x ^ (x >> 27) ^ (x >> 54);
+    x = b * x;
+    return x ^ (x >> 30) ^ (x >> 60);
+}
+
+/* The largest number there is, 1 - 2^-53, as place: it rounds to the end of most cells, and must not leave them. */
+static void test_ends(void)
+{
+    static uint32_t hits[MOST];
+    uint32_t wrong = 0;
+    void *instance;
+
+    make(0, 0, &instance);
+    for (uint32_t cells = 1; cells <= 400; cells++)
+        for (uint64_t dimension = 0; dimension < 2; dimension++) {
+            memset(hits, 0, cells * sizeof *hits);
+            for (uint32_t i = 0; i < cells; i++) {
+                set(i, 1, i, cells);
+                path_key[i] = unmix(UINT64_MAX) - (dimension + 1) * MCR_GOLDEN;
+            }
+            fill(instance, cells);
+            for (uint32_t i = 0; i < cells; i++) {
+                uint32_t c = automatic_cell(x[i], y[i], cells);
+                wrong += !(x[i] >= 0 && x[i] < 1 && y[i] >= 0 && y[i] < 1) || c >= cells || hits[c]++;
+            }
+        }
+    ok(wrong == 0 && mcr_number(unmix(UINT64_MAX) - MCR_GOLDEN, 0) == 1 - 0x1p-53, "isa %u: the largest number stays in its cell (%u left)", isa,
+       wrong);
+    plugin->destroy(instance);
+}
+
 /*
  * What it is for: the error of the mean of a function over the pixel. For f = x + y with N = 97 samples, independent variance is 1/6/N;
  * in cells it is below 1/6/N^2 * 2 or so. It must nowhere be above independent's, also for rows of unequal counts: checked at every N to
@@ -336,6 +378,7 @@ int main(void)
         test_order(36, 0, 35);
         test_order(64, 1, 2);
         test_places();
+        test_ends();
         test_variance();
         test_lanes();
         test_large();
