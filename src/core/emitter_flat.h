@@ -138,18 +138,12 @@ MCR_INLINE double upper_argument(double im, double re)
 /* Sine and cosine of x in [0, pi], from a quarter of it (the polynomials of mcr_sin and mcr_cos) by doubling twice: errors below 1e-15, of the sine relative. */
 MCR_INLINE void half_turn(double x, double *sine, double *cosine)
 {
-    double y = 0.25 * x, z = y * y, s = 0x1.5d8b60e162fadp-33, c = -0x1.8fa67db631123p-37;
-    s = s * z - 0x1.ae5e4ba0491e7p-26;
-    s = s * z + 0x1.71de3555361a3p-19;
-    s = s * z - 0x1.a01a019be90b4p-13;
-    s = s * z + 0x1.111111110f72fp-7;
-    s = s * z - 0x1.5555555555548p-3;
+    double y = 0.25 * x, z = y * y, z2 = z * z, z4 = z2 * z2;
+    double s = (-0x1.5555555555548p-3 + z * 0x1.111111110f72fp-7) + z2 * (-0x1.a01a019be90b4p-13 + z * 0x1.71de3555361a3p-19) +
+               z4 * (-0x1.ae5e4ba0491e7p-26 + z * 0x1.5d8b60e162fadp-33);
+    double c = (0x1.555555555554bp-5 - z * 0x1.6c16c16c15015p-10) + z2 * (0x1.a01a019c8f204p-16 - z * 0x1.27e4f7f188713p-22) +
+               z4 * (0x1.1ee9dbc541f9cp-29 - z * 0x1.8fa67db631123p-37);
     s = y + y * (z * s);
-    c = c * z + 0x1.1ee9dbc541f9cp-29;
-    c = c * z - 0x1.27e4f7f188713p-22;
-    c = c * z + 0x1.a01a019c8f204p-16;
-    c = c * z - 0x1.6c16c16c15015p-10;
-    c = c * z + 0x1.555555555554bp-5;
     c = 1 - z * (0.5 - z * c);
     double sine2 = 2 * s * c, cosine2 = 1 - 2 * s * s;
     *sine = 2 * sine2 * cosine2;
@@ -197,7 +191,8 @@ MCR_INLINE void fan_parallelogram(const struct flat *k, struct fan *f)
     f->steady = f->triple * f->triple > STEADY_HEIGHT_SQUARED * (k->nn * far);
 }
 
-MCR_INLINE struct fan fan_measure(uint32_t kind, const struct flat *k, double px, double py, double pz)
+/* All but `half`, whose limit `steady` does not include. */
+MCR_INLINE struct fan fan_open(uint32_t kind, const struct flat *k, double px, double py, double pz)
 {
     struct fan f;
     double height;
@@ -210,6 +205,12 @@ MCR_INLINE struct fan fan_measure(uint32_t kind, const struct flat *k, double px
         fan_triangle(k, &f);
     else
         fan_parallelogram(k, &f);
+    return f;
+}
+
+MCR_INLINE struct fan fan_measure(uint32_t kind, const struct flat *k, double px, double py, double pz)
+{
+    struct fan f = fan_open(kind, k, px, py, pz);
     f.half = upper_argument(f.im, f.re);
     f.steady &= f.half > STEADY_HALF_ANGLE;
     return f;
@@ -223,43 +224,64 @@ MCR_INLINE double flat_solid_density(uint32_t kind, const struct flat *k, double
     return f.steady ? by_angle : by_area;
 }
 
-/* NOT_STEADY as density where it is to be done by area. */
-MCR_INLINE struct drawn flat_draw_solid(uint32_t kind, const struct flat *k, double px, double py, double pz, double u, double v)
+/*
+ * Drawing goes over the lanes three times, since the chain from the vertices to the direction is longer than what a processor holds in flight:
+ * flat_draw_open, flat_draw_angle, flat_draw_sweep. What they hand over:
+ */
+struct sweep {
+    double length0, length1, length2, d01, d02, triple, first, re, im; /* of struct fan */
+    double sine, cosine;                                               /* of the part u of half the solid angle */
+    double half;                                                       /* 0: not seen; NOT_STEADY */
+};
+
+MCR_INLINE struct sweep flat_draw_open(uint32_t kind, const struct flat *k, double px, double py, double pz)
 {
-    struct fan f = fan_measure(kind, k, px, py, pz);
-    double sine, cosine;
-    half_turn(u * f.half, &sine, &cosine);
-    double ax = f.x[1], ay = f.y[1], az = f.z[1], ex, ey, ez, length = f.length[1], dot = f.d01;
+    struct fan f = fan_open(kind, k, px, py, pz);
+    struct sweep s = {f.length[0], f.length[1], f.length[2], f.d01, f.d02, f.triple, f.first, f.re, f.im, 0, 0, f.seen ? (f.steady ? 1 : NOT_STEADY) : 0};
+    return s;
+}
+
+MCR_INLINE void flat_draw_angle(struct sweep *s, double u)
+{
+    double half = upper_argument(s->im, s->re);
+    half_turn(u * half, &s->sine, &s->cosine);
+    s->half = s->half > 0 ? (half > STEADY_HALF_ANGLE ? half : NOT_STEADY) : s->half;
+}
+
+MCR_INLINE struct drawn flat_draw_sweep(uint32_t kind, const struct flat *k, const struct sweep *s, double px, double py, double pz, double v)
+{
+    double x0 = k->cx - px, y0 = k->cy - py, z0 = k->cz - pz, ax = x0 + k->ux, ay = y0 + k->uy, az = z0 + k->uz, ex, ey, ez;
+    double sine = s->sine, cosine = s->cosine, length = s->length1, dot = s->d01;
     if (kind == MCR_EMITTER_TRIANGLE) {
         ex = k->vx - k->ux, ey = k->vy - k->uy, ez = k->vz - k->uz;
     } else {
         /* Past the first triangle, whose half angle has the direction first + i triple: the rest goes into the second one, along -e0. */
-        double past = sine * f.first - cosine * f.triple, along = cosine * f.first + sine * f.triple;
+        double past = sine * s->first - cosine * s->triple, along = cosine * s->first + sine * s->triple;
         int second = past > 0;
         sine = second ? past : sine;
         cosine = second ? along : cosine;
-        ax = second ? f.x[2] : ax, ay = second ? f.y[2] : ay, az = second ? f.z[2] : az;
+        ax = second ? ax + k->vx : ax, ay = second ? ay + k->vy : ay, az = second ? az + k->vz : az;
         ex = second ? -k->ux : k->vx, ey = second ? -k->uy : k->vy, ez = second ? -k->uz : k->vz;
-        length = second ? f.length[2] : length;
-        dot = second ? f.d02 : dot;
+        length = second ? s->length2 : length;
+        dot = second ? s->d02 : dot;
     }
     /* With A and m = |A|^2 E - (A.E) A not brought to unit length, tan(t/2) = x |m| / y. One division serves 1/|A|, 1/|B| and 1/(x^2 m^2 + y^2). */
     double square = length * length, along = ax * ex + ay * ey + az * ez;
     double mx = square * ex - along * ax, my = square * ey - along * ay, mz = square * ez - along * az;
-    double lengths = length * f.length[0], x = (lengths + dot) * sine;
-    double y = square * f.triple * cosine - length * (f.x[0] * mx + f.y[0] * my + f.z[0] * mz) * sine;
+    double lengths = length * s->length0, x = (lengths + dot) * sine;
+    double y = square * s->triple * cosine - length * (x0 * mx + y0 * my + z0 * mz) * sine;
     double yy = y * y, xx = x * x * (mx * mx + my * my + mz * mz), norm = yy + xx;
     double inverse = 1 / (norm * lengths), scale = inverse * lengths, ib = inverse * norm * length;
-    double ca = (yy - xx) * (inverse * f.length[0]), cm = 2 * (x * y) * scale;
-    double bx = f.x[0] * ib, by = f.y[0] * ib, bz = f.z[0] * ib;
+    double ca = (yy - xx) * (inverse * s->length0), cm = 2 * (x * y) * scale;
+    double bx = x0 * ib, by = y0 * ib, bz = z0 * ib;
     /* From b along the arc to c': cos = 1 - v chord^2 / 2. Again one division for two. */
     double dx = ca * ax + cm * mx - bx, dy = ca * ay + cm * my - by, dz = ca * az + cm * mz - bz;
-    double chord = dx * dx + dy * dy + dz * dz, part = v * chord, rest = 4 - chord, share = 1 / (rest * f.half);
-    double out = sqrt(v * (4 - part) * (f.half * share)), keep = 1 - 0.5 * part + 0.5 * chord * out;
+    double chord = dx * dx + dy * dy + dz * dz, part = v * chord, rest = 4 - chord, share = 1 / (rest * s->half);
+    double out = sqrt(v * (4 - part) * (s->half * share)), keep = 1 - 0.5 * part + 0.5 * chord * out;
     double wx = keep * bx + out * dx, wy = keep * by + out * dy, wz = keep * bz + out * dz;
     double fix = 1.5 - 0.5 * (wx * wx + wy * wy + wz * wz); /* a Newton step toward unit length */
-    int good = f.seen & f.steady;
-    double density = f.seen ? (f.steady ? 0.5 * (rest * share) : NOT_STEADY) : 0.0;
+    int good = s->half > 0;
+    double density = good ? 0.5 * (rest * share) : s->half;
     struct drawn d = {good ? wx * fix : 0, good ? wy * fix : 0, good ? wz * fix : 0, density, 0};
     return d;
 }

@@ -184,7 +184,7 @@ static void density_egg(int alone, const struct mcr_emitter_lanes *lanes, const 
 }
 
 void MCR_ISA_NAME(mcr_emitter_density)(const struct mcr_emitters *all, uint32_t kind, uint32_t by, int alone, const struct mcr_emitter_lanes *lanes,
-                                       const double *k, int varying, struct mcr_disk_scratch *scratch)
+                                       const double *k, int varying, struct mcr_solid_scratch *scratch)
 {
     if (kind == MCR_EMITTER_SPHERE)
         density_ball(by, alone, lanes, k, varying);
@@ -193,7 +193,7 @@ void MCR_ISA_NAME(mcr_emitter_density)(const struct mcr_emitters *all, uint32_t 
     else if (by == MCR_LIGHT_BY_AREA)
         BY_VARYING(density_flat_area, lanes);
     else if (kind == MCR_EMITTER_DISK)
-        MCR_ISA_NAME(mcr_emitter_disk_density)(all, lanes, k, varying, scratch);
+        MCR_ISA_NAME(mcr_emitter_disk_density)(all, lanes, k, varying, &scratch->disk);
     else if (kind == MCR_EMITTER_TRIANGLE)
         BY_VARYING(density_flat_solid, MCR_EMITTER_TRIANGLE, lanes);
     else
@@ -254,9 +254,40 @@ MCR_INLINE void draw_flat_area(uint32_t kind, const struct mcr_emitter_lanes *la
     DRAW_LOOP(flat_load, flat, flat_draw_area(kind, &s, NUMBERS));
 }
 
-MCR_INLINE void draw_flat_solid(uint32_t kind, const struct mcr_emitter_lanes *lanes, const double *restrict k, const int varying)
+/* The members of struct sweep in rows. */
+#define SWEEP_OUT(row, s)                                                                                                                     \
+    (row)[0][i] = (s).length0, (row)[1][i] = (s).length1, (row)[2][i] = (s).length2, (row)[3][i] = (s).d01, (row)[4][i] = (s).d02,              \
+    (row)[5][i] = (s).triple, (row)[6][i] = (s).first, (row)[7][i] = (s).re, (row)[8][i] = (s).im, (row)[11][i] = (s).half
+#define SWEEP_IN(row)                                                                                                                         \
+    {(row)[0][i], (row)[1][i], (row)[2][i], (row)[3][i], (row)[4][i], (row)[5][i], (row)[6][i], (row)[7][i], (row)[8][i],                        \
+     (row)[9][i], (row)[10][i], (row)[11][i]}
+
+MCR_INLINE void draw_flat_solid(uint32_t kind, mcr_emitter_row *restrict row, const struct mcr_emitter_lanes *lanes, const double *restrict k,
+                                const int varying)
 {
-    DRAW_LOOP(flat_load, flat, flat_draw_solid(kind, &s, NUMBERS));
+    ARRAYS(lanes);
+    const double *restrict u = lanes->u, *restrict v = lanes->v;
+    double *restrict wx = lanes->wx, *restrict wy = lanes->wy, *restrict wz = lanes->wz;
+    double *restrict density = lanes->density, *restrict distance = lanes->distance;
+    MCR_LANES
+    for (uint32_t i = 0; i < n; i++) {
+        const struct flat f = CONSTANTS(flat_load);
+        const struct sweep s = flat_draw_open(kind, &f, px[i], py[i], pz[i]);
+        SWEEP_OUT(row, s);
+    }
+    MCR_LANES
+    for (uint32_t i = 0; i < n; i++) {
+        struct sweep s = SWEEP_IN(row);
+        flat_draw_angle(&s, u[i]);
+        row[9][i] = s.sine, row[10][i] = s.cosine, row[11][i] = s.half;
+    }
+    MCR_LANES
+    for (uint32_t i = 0; i < n; i++) {
+        const struct flat f = CONSTANTS(flat_load);
+        const struct sweep s = SWEEP_IN(row);
+        const struct drawn d = flat_draw_sweep(kind, &f, &s, px[i], py[i], pz[i], v[i]);
+        wx[i] = d.x, wy[i] = d.y, wz[i] = d.z, density[i] = d.density, distance[i] = d.distance;
+    }
 }
 
 MCR_INLINE void draw_ball_area(int alone, const struct mcr_emitter_lanes *lanes, const double *restrict k, const int varying)
@@ -288,27 +319,27 @@ static void draw_round(uint32_t kind, uint32_t by, int alone, const struct mcr_e
         BY_VARYING(draw_ball_area, 0, lanes);
 }
 
-static void draw_flat(uint32_t kind, uint32_t by, const struct mcr_emitter_lanes *lanes, const double *k, int varying)
+static void draw_flat(uint32_t kind, uint32_t by, const struct mcr_emitter_lanes *lanes, const double *k, int varying, mcr_emitter_row *row)
 {
     if (kind == MCR_EMITTER_DISK)
         BY_VARYING(draw_flat_area, MCR_EMITTER_DISK, lanes); /* by area */
     else if (kind == MCR_EMITTER_TRIANGLE && by == MCR_LIGHT_BY_AREA)
         BY_VARYING(draw_flat_area, MCR_EMITTER_TRIANGLE, lanes);
     else if (kind == MCR_EMITTER_TRIANGLE)
-        BY_VARYING(draw_flat_solid, MCR_EMITTER_TRIANGLE, lanes);
+        BY_VARYING(draw_flat_solid, MCR_EMITTER_TRIANGLE, row, lanes);
     else if (by == MCR_LIGHT_BY_AREA)
         BY_VARYING(draw_flat_area, MCR_EMITTER_PARALLELOGRAM, lanes);
     else
-        BY_VARYING(draw_flat_solid, MCR_EMITTER_PARALLELOGRAM, lanes);
+        BY_VARYING(draw_flat_solid, MCR_EMITTER_PARALLELOGRAM, row, lanes);
 }
 
 void MCR_ISA_NAME(mcr_emitter_draw)(const struct mcr_emitters *all, uint32_t kind, uint32_t by, int alone, const struct mcr_emitter_lanes *lanes,
-                                    const double *k, int varying, struct mcr_disk_scratch *scratch)
+                                    const double *k, int varying, struct mcr_solid_scratch *scratch)
 {
     if (kind == MCR_EMITTER_DISK && by == MCR_LIGHT_BY_SOLID_ANGLE)
-        MCR_ISA_NAME(mcr_emitter_disk_draw)(all, lanes, k, varying, scratch);
+        MCR_ISA_NAME(mcr_emitter_disk_draw)(all, lanes, k, varying, &scratch->disk);
     else if (kind == MCR_EMITTER_SPHERE || kind == MCR_EMITTER_ELLIPSOID)
         draw_round(kind, by, alone, lanes, k, varying);
     else
-        draw_flat(kind, by, lanes, k, varying);
+        draw_flat(kind, by, lanes, k, varying, scratch->sweep);
 }

@@ -48,6 +48,33 @@ struct mcr_disk_scratch {
     struct mcr_disk_chunk chunk;
 };
 
+/* Triangles and parallelograms by solid angle: struct sweep of each lane. */
+#define MCR_SWEEP_ROWS 12u
+
+struct mcr_solid_scratch {
+    struct mcr_disk_scratch disk;
+    mcr_emitter_row sweep[MCR_SWEEP_ROWS];
+};
+
+/*
+ * emitter_tree.c: more than MCR_EMITTERS_LISTED emitters are put into a tree and into its order, halved down to leaves of MCR_EMITTER_LEAF at most; its depth is
+ * below MCR_EMITTER_DEPTH for any 32-bit count. Returns 0, or -1 when memory is short.
+ */
+#define MCR_EMITTERS_LISTED 32u
+#define MCR_EMITTER_LEAF 4u
+#define MCR_EMITTER_DEPTH 32u
+int mcr_emitter_tree_build(struct mcr_emitters *all, struct mcr_arena *arena);
+
+/* Walking the tree: inverse directions of the block, the lanes that each level's box is crossed by, and nodes still to visit with their parents' lanes. */
+struct mcr_emitter_walk {
+    mcr_emitter_row ix, iy, iz, sum, wx, wy, wz, px, py, pz;
+    int64_t chosen[MCR_EMITTER_BLOCK];
+    int32_t list[(MCR_EMITTER_DEPTH + 1) * MCR_EMITTER_BLOCK];
+    struct {
+        uint32_t node, offset, count;
+    } stack[MCR_EMITTER_DEPTH + 1];
+};
+
 struct mcr_emitter_scratch {
     mcr_emitter_row total;                /* sum of the probabilities of the emitters that are seen, then its inverse */
     mcr_emitter_row share;                /* of the chosen emitter, before division by the total */
@@ -55,7 +82,8 @@ struct mcr_emitter_scratch {
     int64_t chosen[MCR_EMITTER_BLOCK];    /* emitter, -1: none */
     int32_t list[MCR_EMITTER_BLOCK];
     struct mcr_emitter_pack pack, second; /* second: those of the pack that fall back to area */
-    struct mcr_disk_scratch disk;
+    struct mcr_solid_scratch solid;
+    struct mcr_emitter_walk walk;
 };
 
 /* emitter_kernels.c. Flags (1 or 0) the lanes whose rays (p; w) cross emitter e and that see it. */
@@ -67,12 +95,12 @@ void MCR_ISA_NAME(mcr_emitter_seen)(const struct mcr_emitters *all, uint32_t e, 
  * density: of directions that cross. `alone`: the density of the one point at `distance`.
  */
 void MCR_ISA_NAME(mcr_emitter_density)(const struct mcr_emitters *all, uint32_t kind, uint32_t by, int alone, const struct mcr_emitter_lanes *lanes,
-                                       const double *k, int varying, struct mcr_disk_scratch *scratch);
+                                       const double *k, int varying, struct mcr_solid_scratch *scratch);
 /* distance: to what is seen in direction w. */
 void MCR_ISA_NAME(mcr_emitter_distance)(uint32_t kind, const struct mcr_emitter_lanes *lanes, const double *k, int varying);
 /* Draws w, density and distance (0 where it was drawn by solid angle); density NOT_STEADY: is to be drawn by area. */
 void MCR_ISA_NAME(mcr_emitter_draw)(const struct mcr_emitters *all, uint32_t kind, uint32_t by, int alone, const struct mcr_emitter_lanes *lanes,
-                                    const double *k, int varying, struct mcr_disk_scratch *scratch);
+                                    const double *k, int varying, struct mcr_solid_scratch *scratch);
 
 /* emitter_disk.c: these two for disks by solid angle. */
 void MCR_ISA_NAME(mcr_emitter_disk_density)(const struct mcr_emitters *all, const struct mcr_emitter_lanes *lanes, const double *k, int varying,

@@ -7,6 +7,8 @@
 #include "core/emitter_flat.h"
 #include "core/emitter_lanes.h"
 
+#include <string.h>
+
 #define CROSS MCR_ISA_NAME(mcr_emitter_cross)
 #define SEEN MCR_ISA_NAME(mcr_emitter_seen)
 #define DENSITY MCR_ISA_NAME(mcr_emitter_density)
@@ -20,10 +22,29 @@
 
 /* ---- lists of lanes ------------------------------------------------------------------------------------------------ */
 
+/* Repeats the first entry up to a whole vector, since a few odd lanes cost as much one by one. Returns the new length; there is room for it. */
+static uint32_t pad_list(uint32_t count, int32_t *list)
+{
+    while (count % MCR_LANE_PAD)
+        list[count++] = list[0];
+    return count;
+}
+
+/* Most flags are 0: they are looked at eight at a time. */
 static uint32_t list_flagged(uint32_t n, const double *restrict flag, int32_t *restrict list)
 {
-    uint32_t count = 0;
-    for (uint32_t i = 0; i < n; i++) {
+    uint32_t count = 0, i = 0;
+    for (; i + 8 <= n; i += 8) {
+        uint64_t bits[8];
+        memcpy(bits, flag + i, sizeof bits);
+        if (!(bits[0] | bits[1] | bits[2] | bits[3] | bits[4] | bits[5] | bits[6] | bits[7]))
+            continue;
+        for (uint32_t j = 0; j < 8; j++) {
+            list[count] = (int32_t)(i + j);
+            count += bits[j] != 0;
+        }
+    }
+    for (; i < n; i++) {
         list[count] = (int32_t)i;
         count += flag[i] != 0;
     }
@@ -185,7 +206,7 @@ static void draw_lanes(const struct mcr_emitters *all, uint32_t kind, uint32_t b
     struct mcr_emitter_pack *second = &s->second;
     const double *restrict density = lanes->density;
     uint32_t falling = 0, count = 0;
-    DRAW(all, kind, by, alone, lanes, k, varying, &s->disk);
+    DRAW(all, kind, by, alone, lanes, k, varying, &s->solid);
     if (by == MCR_LIGHT_BY_AREA)
         return;
     for (uint32_t i = 0; i < lanes->n; i++)
@@ -195,12 +216,13 @@ static void draw_lanes(const struct mcr_emitters *all, uint32_t kind, uint32_t b
             second->lane[count] = (int32_t)i;
             count += density[i] < 0;
         }
-        struct mcr_emitter_lanes part = pack_lanes(second, count);
-        gather_points(lanes, count, second->lane, second);
-        gather_numbers(lanes, count, second->lane, second);
+        uint32_t padded = pad_list(count, second->lane);
+        struct mcr_emitter_lanes part = pack_lanes(second, padded);
+        gather_points(lanes, padded, second->lane, second);
+        gather_numbers(lanes, padded, second->lane, second);
         for (uint32_t c = 0; varying && c < MCR_K_SIZE; c++)
-            gather(count, second->lane, k + c * MCR_EMITTER_BLOCK, second->k[c]);
-        DRAW(all, kind, MCR_LIGHT_BY_AREA, alone, &part, varying ? second->k[0] : k, varying, &s->disk);
+            gather(padded, second->lane, k + c * MCR_EMITTER_BLOCK, second->k[c]);
+        DRAW(all, kind, MCR_LIGHT_BY_AREA, alone, &part, varying ? second->k[0] : k, varying, &s->solid);
         scatter_drawn(count, second->lane, second, lanes);
     }
 }
@@ -227,11 +249,12 @@ static void draw_group(const struct mcr_emitters *all, uint32_t by, int alone, u
     uint32_t count = list_chosen(all, s, block->n, which, by_kind, pack->lane);
     if (count == 0)
         return;
-    struct mcr_emitter_lanes lanes = pack_lanes(pack, count);
-    gather_points(block, count, pack->lane, pack);
-    gather_numbers(block, count, pack->lane, pack);
+    uint32_t padded = pad_list(count, pack->lane);
+    struct mcr_emitter_lanes lanes = pack_lanes(pack, padded);
+    gather_points(block, padded, pack->lane, pack);
+    gather_numbers(block, padded, pack->lane, pack);
     if (by_kind)
-        gather_constants(all, s->chosen, count, pack->lane, pack);
+        gather_constants(all, s->chosen, padded, pack->lane, pack);
     draw_lanes(all, kind, by, alone, &lanes, by_kind ? pack->k[0] : all->k[which], by_kind, s);
     scatter_drawn(count, pack->lane, pack, block);
 }
@@ -286,12 +309,107 @@ static void add_emitter(const struct mcr_emitters *all, uint32_t e, uint32_t by,
     if (count == 0)
         return;
     struct mcr_emitter_pack *pack = &s->second;
-    struct mcr_emitter_lanes lanes = pack_lanes(pack, count);
-    gather_points(block, count, s->list, pack);
-    gather_directions(block, count, s->list, pack);
-    DENSITY(all, all->emitter[e].kind, by, 0, &lanes, all->k[e], 0, &s->disk);
+    uint32_t padded = pad_list(count, s->list);
+    struct mcr_emitter_lanes lanes = pack_lanes(pack, padded);
+    gather_points(block, padded, s->list, pack);
+    gather_directions(block, padded, s->list, pack);
+    DENSITY(all, all->emitter[e].kind, by, 0, &lanes, all->k[e], 0, &s->solid);
     for (uint32_t j = 0; j < count; j++)
         sum[s->list[j]] += probability * pack->density[j];
+}
+
+static void invert(uint32_t n, const double *restrict from, double *restrict to)
+{
+    MCR_LANES
+    for (uint32_t i = 0; i < n; i++)
+        to[i] = 1 / from[i];
+}
+
+/* Flags the listed lanes whose rays cross the node's box. What is not a number (a zero direction in the plane of a side) counts as crossed. */
+static void cross_box(const struct mcr_emitter_node *node, const struct mcr_emitter_lanes *block, uint32_t count, const int32_t *restrict list,
+                      const struct mcr_emitter_walk *walk, double *restrict flag)
+{
+    const double *restrict px = block->px, *restrict py = block->py, *restrict pz = block->pz;
+    const double *restrict ix = walk->ix, *restrict iy = walk->iy, *restrict iz = walk->iz;
+    const double lx = node->lo[0], ly = node->lo[1], lz = node->lo[2], hx = node->hi[0], hy = node->hi[1], hz = node->hi[2];
+    MCR_LANES
+    for (uint32_t j = 0; j < count; j++) {
+        int32_t i = list[j];
+        double x0 = (lx - px[i]) * ix[i], x1 = (hx - px[i]) * ix[i], y0 = (ly - py[i]) * iy[i], y1 = (hy - py[i]) * iy[i];
+        double z0 = (lz - pz[i]) * iz[i], z1 = (hz - pz[i]) * iz[i];
+        double nx = x0 < x1 ? x0 : x1, fx = x0 < x1 ? x1 : x0, ny = y0 < y1 ? y0 : y1, fy = y0 < y1 ? y1 : y0;
+        double nz = z0 < z1 ? z0 : z1, fz = z0 < z1 ? z1 : z0;
+        int apart = (nx > fy) | (nx > fz) | (ny > fx) | (ny > fz) | (nz > fx) | (nz > fy) | (fx < 0) | (fy < 0) | (fz < 0);
+        flag[j] = apart ? 0.0 : 1.0;
+    }
+}
+
+/* Adds the emitters of a leaf in the listed lanes. */
+static void add_leaf(const struct mcr_emitters *all, const struct mcr_emitter_node *node, uint32_t by, const struct mcr_emitter_lanes *block,
+                     const int64_t *chosen, double *restrict sum, uint32_t count, int32_t *list, struct mcr_emitter_scratch *s)
+{
+    struct mcr_emitter_walk *w = &s->walk;
+    struct mcr_emitter_lanes lanes = {.n = pad_list(count, list), .px = w->px, .py = w->py, .pz = w->pz, .wx = w->wx, .wy = w->wy, .wz = w->wz};
+    const double *from[] = {block->px, block->py, block->pz, block->wx, block->wy, block->wz};
+    double *to[] = {w->px, w->py, w->pz, w->wx, w->wy, w->wz};
+    for (uint32_t r = 0; r < 6; r++)
+        gather(lanes.n, list, from[r], to[r]);
+    for (uint32_t j = 0; j < lanes.n; j++) {
+        w->sum[j] = 0;
+        w->chosen[j] = chosen ? chosen[list[j]] : -1;
+    }
+    for (uint32_t e = node->first; e < node->first + node->count; e++)
+        add_emitter(all, e, by, &lanes, w->chosen, w->sum, s);
+    for (uint32_t j = 0; j < count; j++)
+        sum[list[j]] += w->sum[j];
+}
+
+/* All emitters, through the tree: each node is asked by the lanes that crossed its parent. */
+static void add_tree(const struct mcr_emitters *all, uint32_t by, const struct mcr_emitter_lanes *block, const int64_t *chosen,
+                     double *restrict sum, struct mcr_emitter_scratch *s)
+{
+    struct mcr_emitter_walk *w = &s->walk;
+    uint32_t depth = 0;
+    invert(block->n, block->wx, w->ix);
+    invert(block->n, block->wy, w->iy);
+    invert(block->n, block->wz, w->iz);
+    for (uint32_t i = 0; i < block->n; i++)
+        w->list[i] = (int32_t)i;
+    w->stack[0].node = w->stack[0].offset = 0;
+    w->stack[0].count = block->n;
+    for (depth = 1; depth > 0;) {
+        uint32_t at = w->stack[--depth].node, offset = w->stack[depth].offset, asked = w->stack[depth].count, count = 0;
+        const struct mcr_emitter_node *node = &all->node[at];
+        int32_t *list = w->list + offset, *next = list + asked;
+        cross_box(node, block, asked, list, w, s->flag);
+        for (uint32_t j = 0; j < asked; j++) {
+            next[count] = list[j];
+            count += s->flag[j] != 0;
+        }
+        if (count == 0)
+            continue;
+        if (node->count > 0) {
+            add_leaf(all, node, by, block, chosen, sum, count, next, s);
+            continue;
+        }
+        for (int right = 1; right >= 0; right--) {
+            w->stack[depth].node = right ? node->right : at + 1;
+            w->stack[depth].offset = offset + asked;
+            w->stack[depth++].count = count;
+        }
+    }
+}
+
+/* Adds all emitters but the chosen ones. */
+static void add_all(const struct mcr_emitters *all, uint32_t by, const struct mcr_emitter_lanes *block, const int64_t *chosen, double *sum,
+                    struct mcr_emitter_scratch *s)
+{
+    if (all->node) {
+        add_tree(all, by, block, chosen, sum, s);
+        return;
+    }
+    for (uint32_t e = 0; e < all->count; e++)
+        add_emitter(all, e, by, block, chosen, sum, s);
 }
 
 static void scale(uint32_t n, const double *restrict factor, double *restrict value)
@@ -310,8 +428,7 @@ static void density(const struct mcr_emitters *all, void *scratch, uint32_t by, 
         block.wx = toward->x + base, block.wy = toward->y + base, block.wz = toward->z + base;
         for (uint32_t i = 0; i < block.n; i++)
             out[base + i] = 0;
-        for (uint32_t e = 0; e < all->count; e++)
-            add_emitter(all, e, by, &block, NULL, out + base, s);
+        add_all(all, by, &block, NULL, out + base, s);
         if (shares(all)) {
             sum_seen(all, &block, s);
             invert_total(block.n, s->total);
@@ -329,8 +446,7 @@ static void complete(const struct mcr_emitters *all, uint32_t by, const struct m
     MCR_LANES
     for (uint32_t i = 0; i < n; i++)
         out[i] = own[i] * share[i];
-    for (uint32_t e = 0; e < all->count; e++)
-        add_emitter(all, e, by, block, s->chosen, out, s);
+    add_all(all, by, block, s->chosen, out, s);
     if (shares(all))
         scale(n, s->total, out);
 }
@@ -441,7 +557,7 @@ static void density_of_points(const struct mcr_emitters *all, uint32_t by, const
         gather_directions(block, count, pack->lane, pack);
         gather(count, pack->lane, block->distance, pack->distance);
         gather_constants(all, s->chosen, count, pack->lane, pack);
-        DENSITY(all, kind, by, 1, &lanes, pack->k[0], 1, &s->disk);
+        DENSITY(all, kind, by, 1, &lanes, pack->k[0], 1, &s->solid);
         scatter(count, pack->lane, pack->density, block->density);
     }
 }

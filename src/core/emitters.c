@@ -256,6 +256,8 @@ struct mcr_emitters *mcr_emitters_create(struct mcr_arena *arena, const struct m
         if (sides)
             add_triangle(all, &scene->triangles, t, sides);
     }
+    if (all->count > MCR_EMITTERS_LISTED && mcr_emitter_tree_build(all, arena))
+        return NULL;
     for (uint32_t p = 0; p < scene->primitive_count; p++)
         all->of_primitive[p] = -1;
     for (uint32_t e = 0; e < all->count; e++)

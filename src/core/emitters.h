@@ -58,6 +58,12 @@ struct mcr_emitter {
     double probability;  /* power over the power of all */
 };
 
+/* A box of many emitters: two children, the left one right behind it, or count > 0 emitters from `first` on. */
+struct mcr_emitter_node {
+    double lo[3], hi[3];
+    uint32_t first, count, right;
+};
+
 struct mcr_emitters {
     uint32_t count;
     uint32_t primitive_count;
@@ -67,6 +73,7 @@ struct mcr_emitters {
     uint32_t levels;              /* of the search in `from`: 2^levels >= count */
     int32_t *of_primitive;        /* the emitter's number or -1 */
     uint32_t kinds;               /* bit set of those there are */
+    struct mcr_emitter_node *node; /* NULL with few emitters; else emitters are in the order of its leaves */
     double cosine[128];           /* cos(2 pi i / 128) */
 };
 

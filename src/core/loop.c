@@ -110,6 +110,7 @@ static void begin_paths(struct mcr_batch *batch, const struct mcr_pass *pass, st
         uint64_t cell = job->first_cell + path / pass->cell_samples, pixel = cell % pass->pixels;
         uint32_t x = film->x0 + (uint32_t)(pixel % width), y = film->y0 + (uint32_t)(pixel / width);
         uint64_t first = pass->first + cell / pass->pixels * pass->cell_samples + sample - i;
+        MCR_LANES
         for (uint32_t j = i; j < end; j++) {
             batch->camera_x[j] = x;
             batch->camera_y[j] = y;
@@ -118,6 +119,7 @@ static void begin_paths(struct mcr_batch *batch, const struct mcr_pass *pass, st
         }
         i = end;
     }
+    MCR_LANES
     for (uint32_t i = 0; i < n; i++) {
         batch->camera_replicate[i] = pass->replicate;
         paths->planned[to + i] = pass->planned;
@@ -125,6 +127,7 @@ static void begin_paths(struct mcr_batch *batch, const struct mcr_pass *pass, st
         paths->bounce[to + i] = 0;
         batch->source[batch->rays + i] = to + i;
     }
+    MCR_LANES
     for (uint32_t i = 0; i < n; i++)
         paths->r[to + i] = paths->g[to + i] = paths->b[to + i] = 1;
     job->begun += n;
@@ -224,7 +227,7 @@ static int32_t scatter_range(struct mcr_batch *batch, const struct mcr_range *ra
     batch->running = NULL;
     if (status)
         return status;
-    TIMED(MCR_STAGE_SCATTER, core->stages->scatter(batch, b, range->end, core->scene->render.roulette ? roulette : NULL));
+    TIMED(MCR_STAGE_SCATTER, core->stages->scatter(batch, b, range->end, core->scene->render.roulette ? batch->roulette : NULL));
     batch->scatterings += n;
     return MCR_OK;
 }

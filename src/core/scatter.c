@@ -22,7 +22,7 @@ void MCR_ISA_NAME(mcr_stage_scatter)(struct mcr_batch *batch, uint32_t begin, ui
         g[k] = green;
         b[k] = blue;
         /* NaN lives on, so that it reaches the film and is told. */
-        alive[k] = drawn & !(most <= 0) ? 1.0 : 0.0;
+        alive[k] = (drawn & !(most <= 0)) ? 1.0 : 0.0;
     }
     if (u) {
         const uint32_t *bounce = paths->bounce;
@@ -31,7 +31,7 @@ void MCR_ISA_NAME(mcr_stage_scatter)(struct mcr_batch *batch, uint32_t begin, ui
         for (uint32_t k = begin; k < end; k++) {
             double most = r[k] > g[k] ? r[k] : g[k];
             most = most > b[k] ? most : b[k];
-            double chance = (bounce[k] >= from) & (most < 1) ? most : 1.0;
+            double chance = ((bounce[k] >= from) & (most < 1)) ? most : 1.0;
             double inverse = 1 / (chance > 0 ? chance : 1.0);
             r[k] *= inverse;
             g[k] *= inverse;

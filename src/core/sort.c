@@ -15,7 +15,7 @@ static void count_zones(struct mcr_batch *batch)
     for (uint32_t j = 0; j < batch->rays; j++) {
         /* Entry 0 is for misses; a material that does not scatter has its zone among those that end already. */
         uint32_t z = zone_of[batch->hit[j] + 1];
-        z += (z < groups) & (bounce[source[j]] >= depth) ? groups : 0;
+        z += ((z < groups) & (bounce[source[j]] >= depth)) ? groups : 0;
         batch->zone[j] = z;
         batch->zone_count[z]++;
     }

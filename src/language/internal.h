@@ -39,6 +39,7 @@ struct mcr_token {
     uint32_t text_length;
     uint8_t first;                 /* the first on its line */
     uint8_t bad;                   /* wrong, which was reported */
+    uint8_t after_stray;           /* bytes before it were refused */
     double number;
 };
 
@@ -96,6 +97,7 @@ struct mcr_parser {
     struct mcr_file *file;
     int quiet;                             /* looking ahead: report nothing */
     int panic, fatal;
+    const char *expected_at;               /* the token before which a ',' was missing */
     uint32_t panic_brackets;               /* '(' that were open when panic was set */
     int item_first;                        /* the item being read began a line */
     int incomplete;                        /* a text is missing: names may be defined there */

@@ -126,15 +126,9 @@ static void skip_stray(struct mcr_parser *parser, struct mcr_lexer *lexer)
     } else if (c < 0x20 || c == 0x7f) {
         lexer->at++;
         complain(parser, lexer, start, 1, "unexpected control character 0x%02X", (unsigned)c);
-    } else if (c < 0x80) {
-        const char *hint = c == ']' ? ", tuples are written ( a, b, ... )" : "";
-        lexer->at++;
-        complain(parser, lexer, start, 1, "unexpected character '%c'%s", c, hint);
     } else {
         lexer->at++;
-        complain(parser, lexer, start, 1, "unexpected byte 0x%02X, the text is not UTF-8", (unsigned)c);
-        while (lexer->at < lexer->end && (unsigned char)*lexer->at >= 0x80 && !mcr_utf8_length(lexer->at, lexer->end))
-            lexer->at++;
+        complain(parser, lexer, start, 1, "unexpected character '%c'%s", c, c == ']' ? ", tuples are written ( a, b, ... )" : "");
     }
 }
 
@@ -147,9 +141,10 @@ static void lex_word(struct mcr_parser *parser, struct mcr_lexer *lexer, struct 
         int c = byte(lexer, 0);
         if (is_letter(c) || is_digit(c) || (c == '-' && is_letter(byte(lexer, 1)))) {
             lexer->at++;
-        } else if (c >= 0x80 && (length = mcr_utf8_length(lexer->at, lexer->end)) > 0) {
+        } else if (c >= 0x80) {
             foreign = foreign ? foreign : lexer->at;
-            lexer->at += length;
+            length = mcr_utf8_length(lexer->at, lexer->end);
+            lexer->at += length ? length : 1;
         } else {
             break;
         }
@@ -157,7 +152,10 @@ static void lex_word(struct mcr_parser *parser, struct mcr_lexer *lexer, struct 
     if (foreign) {
         token->bad = 1;
         length = mcr_utf8_length(foreign, lexer->end);
-        complain(parser, lexer, foreign, length, "unexpected '%.*s', only strings and comments are more than ASCII", (int)length, foreign);
+        if (length)
+            complain(parser, lexer, foreign, length, "unexpected '%.*s', only strings and comments are more than ASCII", (int)length, foreign);
+        else
+            complain(parser, lexer, foreign, 1, "unexpected byte 0x%02X, the text is not UTF-8", (unsigned)(unsigned char)*foreign);
     }
     token->kind = TOKEN_WORD;
     token->text_length = (uint32_t)(lexer->at - start);
@@ -283,7 +281,9 @@ static void lex_string(struct mcr_parser *parser, struct mcr_lexer *lexer, struc
             token->bad = 1;
             complain(parser, lexer, lexer->at, 1, c >= 0x80 ? "byte 0x%02X in a string, the text is not UTF-8" : "control character 0x%02X in a string",
                      (unsigned)c);
-            length = 1;
+            for (length = 1; (size_t)(lexer->end - lexer->at) > length && (unsigned char)lexer->at[length] >= 0x80 &&
+                             !mcr_utf8_length(lexer->at + length, lexer->end);)
+                length++;
         }
         lexer->at += length;
     }
@@ -292,9 +292,10 @@ static void lex_string(struct mcr_parser *parser, struct mcr_lexer *lexer, struc
         lexer->at++;
 }
 
-/* Blanks, comments and what cannot be read; stops at a token or the end. */
-static void skip_blanks(struct mcr_parser *parser, struct mcr_lexer *lexer)
+/* Blanks, comments and what cannot be read; stops at a token or the end. Returns whether bytes were refused. */
+static int skip_blanks(struct mcr_parser *parser, struct mcr_lexer *lexer)
 {
+    int refused = 0;
     while (lexer->at < lexer->end) {
         int c = (unsigned char)*lexer->at;
         if (c == ' ' || c == '\t') {
@@ -311,19 +312,20 @@ static void skip_blanks(struct mcr_parser *parser, struct mcr_lexer *lexer)
         } else if (c == '/' && (byte(lexer, 1) == '/' || byte(lexer, 1) == '*')) {
             skip_foreign_comment(parser, lexer);
         } else if (c == '[') {
-            return;
+            break;
         } else if (c == ']' && lexer->square) {
-            return;
+            break;
         } else if (c == '\'' && foreign_string_end(lexer)) {
-            return;
-        } else if (c >= 0x80 && mcr_utf8_length(lexer->at, lexer->end)) {
-            return;
-        } else if (is_letter(c) || is_digit(c) || c == '"' || (c == '.' && is_digit(byte(lexer, 1))) || (c && strchr("(){},=+-*/^", c))) {
-            return;
+            break;
+        } else if (is_letter(c) || c >= 0x80 || is_digit(c) || c == '"' || (c == '.' && is_digit(byte(lexer, 1))) ||
+                   (c && strchr("(){},=+-*/^", c))) {
+            break;
         } else {
             skip_stray(parser, lexer);
+            refused = 1;
         }
     }
+    return refused;
 }
 
 static void lex_mark(struct mcr_parser *parser, struct mcr_lexer *lexer, struct mcr_token *token)
@@ -342,12 +344,13 @@ static void lex_mark(struct mcr_parser *parser, struct mcr_lexer *lexer, struct 
 
 void mcr_lex(struct mcr_parser *parser, struct mcr_lexer *lexer, struct mcr_token *token)
 {
-    int c;
+    int c, refused;
     if (parser->fatal)
         lexer->at = lexer->end;
-    skip_blanks(parser, lexer);
+    refused = skip_blanks(parser, lexer);
     *token = (struct mcr_token){ .kind = TOKEN_END, .line = lexer->line, .text = lexer->at, .first = (uint8_t)lexer->fresh,
-                                 .column = (uint32_t)(lexer->at - lexer->line_start) + 1, .length = 1 };
+                                 .column = (uint32_t)(lexer->at - lexer->line_start) + 1, .length = 1,
+                                 .after_stray = (uint8_t)refused };
     lexer->fresh = 0;
     if (lexer->at == lexer->end)
         return;

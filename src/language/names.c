@@ -145,7 +145,8 @@ void mcr_unknown_name(struct mcr_parser *parser, const char *what, const char *w
     mcr_report(parser->diagnostics, MCR_ERROR, place, "unknown %s '%s'", what, word);
     minus = is_difference(parser, word);
     if (minus) {
-        mcr_report(parser->diagnostics, MCR_NOTE, place, "'%s' is one word, a difference needs blanks: %.*s - %s", word, minus, word, word + minus + 1);
+        mcr_report(parser->diagnostics, MCR_NOTE, place, "'%s' is one word, a difference needs blanks: %.*s - %s", word, minus, word,
+                   word + minus + 1);
         return;
     }
     words = mcr_diagnostics_errors(parser->diagnostics) > 100 ? NULL : malloc(SUGGESTION_ROOM * sizeof *words);

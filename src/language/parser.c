@@ -85,6 +85,7 @@ static int value_follows(struct mcr_parser *parser)
 static void read_setting(struct mcr_parser *parser, struct mcr_block *block, const char *word, struct mcr_place place)
 {
     struct mcr_item item = { .word = word, .place = place }, *before = last_setting(parser, block);
+    int after_stray = parser->token.after_stray;
     char text[80];
 
     if (parser->token.kind == '=') {
@@ -108,7 +109,7 @@ static void read_setting(struct mcr_parser *parser, struct mcr_block *block, con
     if (parser->panic)
         mcr_recover(parser, block->inside);
     add_item(parser, block, &item);
-    block->after = item.value.kind == MCR_VALUE_ERROR ? MCR_AFTER_ERROR : MCR_AFTER_SETTING;
+    block->after = item.value.kind == MCR_VALUE_ERROR || after_stray ? MCR_AFTER_ERROR : MCR_AFTER_SETTING;
 }
 
 /* `let` was taken. */

@@ -75,6 +75,7 @@ int mcr_separator(struct mcr_parser *parser, struct mcr_place open)
     }
     if (!parser->fatal && mcr_brackets_close(parser, 1)) {
         mcr_report(parser->diagnostics, MCR_ERROR, here, "expected ',' or ')', found %s", mcr_token_described(&parser->token, text));
+        parser->expected_at = parser->token.text;
         if (mcr_begins_value(&parser->token))
             return MCR_LIST_MORE;
         mcr_panic(parser);
@@ -189,10 +190,13 @@ static void no_argument(struct mcr_parser *parser, const struct mcr_value *of, c
     if (parser->panic)
         return;
     name.length = (uint32_t)strlen(of->text);
-    if (mcr_is_near_function(of->text))
+    if (parser->expected_at == found->text) {
+        /* told already */
+    } else if (mcr_is_near_function(of->text)) {
         mcr_unknown_name(parser, "function", of->text, name);
-    else
+    } else {
         mcr_report(parser->diagnostics, MCR_ERROR, place, "expected 'name=value' or a child, found %s", mcr_token_described(found, text));
+    }
     mcr_panic(parser);
 }
 

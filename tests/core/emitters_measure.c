@@ -1,12 +1,13 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
  * How exactly solid angles are measured, against the same formulas in long double (64 bits or more): lights of 1e-4 to 1e-12 sr, grazing, with needle
- * corners, points close to edges and corners; spheres of angular radius 1 to 1e-9. Bounds from "Extremes" of the analytic scenes.
+ * corners, points close to edges and corners; spheres of angular radius 1 to 1e-9; disks, and how they are swept. Bounds from "Extremes" of the analytic scenes.
  */
 #include "emitters_scene.h"
 
 #include <float.h>
 
+#include "core/emitter_disk.h"
 #include "core/emitter_round.h"
 
 static long double dot_l(const long double a[3], const long double b[3])
@@ -206,6 +207,100 @@ static void test_sphere(void)
     }
 }
 
+/* The solid angle of a disk at c seen from 0 by the sweep around its centre, with 2^13 nodes; no principal frame is involved. */
+static long double disk_angle(const double c[3], const double e0[3], const double e1[3])
+{
+    const uint32_t nodes = 1u << 13;
+    long double square = 0, triple = 0, sum = 0, distance;
+    for (int i = 0; i < 3; i++) {
+        int j = (i + 1) % 3, k = (i + 2) % 3;
+        square += (long double)c[i] * c[i];
+        triple += c[i] * ((long double)e0[j] * e1[k] - (long double)e0[k] * e1[j]);
+    }
+    distance = sqrtl(square);
+    for (uint32_t n = 0; n < nodes; n++) {
+        long double angle = 2 * 3.14159265358979323846264338327950288L * n / nodes, x = cosl(angle), y = sinl(angle), along = 0, length = 0;
+        for (int i = 0; i < 3; i++) {
+            long double v = c[i] + x * e0[i] + y * e1[i];
+            length += v * v;
+            along += v * c[i];
+        }
+        length = sqrtl(length);
+        sum += 1 / (length * (length + along / distance));
+    }
+    return fabsl(triple) / distance * sum * 2 * 3.14159265358979323846264338327950288L / nodes;
+}
+
+/* The sweep from 0 to `turn` of a cone with semi-axes a, b: Simpson's rule on 1000 parts. */
+static long double swept(long double aa, long double bb, long double turn)
+{
+    const int parts = 1000;
+    long double sum = 0;
+    for (int n = 0; n <= 2 * parts; n++) {
+        long double x = cosl(turn * n / (2 * parts)), y = sinl(turn * n / (2 * parts)), square = 1 + aa * x * x + bb * y * y;
+        sum += (n == 0 || n == 2 * parts ? 1 : n % 2 ? 4 : 2) * sqrtl(aa * bb) / (square + sqrtl(square));
+    }
+    return sum * turn / (6 * parts);
+}
+
+/*
+ * Disks far and near, round and thin: the solid angle against a quadrature; and for drawn directions, the part of the solid angle that the sweep has passed
+ * at theirs against the number they were drawn with, and 1 - cos within the sector.
+ */
+static void test_disk(void)
+{
+    struct stage s;
+    struct batch b;
+    double worst = 0, worst_far = 0, worst_turn = 0, worst_out = 0;
+    uint32_t kinds[4] = {0};
+    batch_begin(&b, 8);
+    for (uint64_t key = 0; key < 800; key++) {
+        double way[3], size = pow(10, -4 * number(key, 20)), thin = pow(10, -1.5 * number(key, 21)), e0[3], e1[3], c[3];
+        unit(key, 0, way);
+        unit(key, 2, e0);
+        unit(key, 4, e1);
+        for (int i = 0; i < 3; i++) {
+            c[i] = way[i];
+            e0[i] *= 1.5 * size;
+            e1[i] *= 1.5 * size * thin;
+        }
+        stage_begin(&s);
+        stage_flat(&s, MCR_SHAPE_DISK, FRONT | BACK, 1, c, e0, e1);
+        stage_ready(&s);
+        struct flat flat = flat_load(s.emitters->k[0], 1);
+        struct disk_cone cone = disk_cone(&flat, 0, 0, 0);
+        kinds[cone.nodes == 8 ? 0 : cone.nodes == 16 ? 1 : cone.nodes == 32 ? 2 : 3]++;
+        if (cone.nodes > 0) {
+            const double origin[3] = {0};
+            batch_at(&b, origin);
+            batch_numbers(&b, key);
+            batch_draw(&b, &s, best_functions(), MCR_LIGHT_BY_SOLID_ANGLE);
+            long double known = disk_angle(c, e0, e1), whole = swept(cone.aa, cone.bb, MCR_PI);
+            double error = fabs((double)(b.density[0] * known - 1));
+            worst = fmax(worst, error);
+            worst_far = fmax(worst_far, size < 0.3 ? error : 0);
+            for (uint32_t i = 0; i < b.n && key % 4 == 0; i++) {
+                double x = (b.x[i] * cone.ax + b.y[i] * cone.ay + b.z[i] * cone.az) / cone.aa;
+                double y = (b.x[i] * cone.bx + b.y[i] * cone.by + b.z[i] * cone.bz) / cone.bb, z = b.x[i] * cone.zx + b.y[i] * cone.zy + b.z[i] * cone.zz;
+                double turn = atan2(y, x), radius = cone.aa * x * x + cone.bb * y * y, sink = radius / (1 + z);
+                turn = turn < 0 ? turn + 2 * MCR_PI : turn;
+                double edge = cone.aa * cos(turn) * cos(turn) + cone.bb * sin(turn) * sin(turn), open = edge / (1 + edge + sqrt(1 + edge));
+                double place = (double)(swept(cone.aa, cone.bb, turn) / (2 * whole));
+                worst_turn = fmax(worst_turn, fmin(fabs(place - b.u[1][i]), 1 - fabs(place - b.u[1][i])));
+                worst_out = fmax(worst_out, fabs(sink / open - b.u[2][i]));
+            }
+        }
+        stage_end(&s);
+    }
+    batch_end(&b);
+    ok(worst <= 1e-10, "disks: error of the solid angle %.1e, of those that fill less than a sixth of the view %.1e", worst, worst_far);
+    /* the series ends at 5e-11; a direction's rounding over the size of the light, 1e-16 / 1e-4, and over its thinness is less */
+    ok(worst_turn <= 1e-10, "disks: swept by solid angle, to %.1e of it", worst_turn);
+    ok(worst_out <= 1e-10, "disks: uniform along the sector, to %.1e", worst_out);
+    ok(kinds[0] > 20 && kinds[1] > 10 && kinds[2] > 10 && kinds[3] > 10, "disks of 8, 16, 32 nodes and by area: %u, %u, %u, %u", kinds[0], kinds[1], kinds[2],
+       kinds[3]);
+}
+
 int main(void)
 {
     if (LDBL_MANT_DIG <= DBL_MANT_DIG) {
@@ -217,5 +312,6 @@ int main(void)
     test_close(MCR_EMITTER_PARALLELOGRAM, "parallelogram");
     test_close(MCR_EMITTER_TRIANGLE, "triangle");
     test_sphere();
+    test_disk();
     return tap_done();
 }

@@ -111,7 +111,7 @@ static void __attribute__((unused)) parse_bytes(struct parsed *parsed, const cha
     parsed_keep(parsed);
 }
 
-static int same(const char *got, const char *expected, const char *what)
+static int __attribute__((unused)) same(const char *got, const char *expected, const char *what)
 {
     if (ok(strcmp(got, expected) == 0, "%s", what))
         return 1;
