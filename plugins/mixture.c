@@ -116,7 +116,7 @@ static uint64_t scratch_bytes(const void *instance, uint32_t n)
     return 3 * padded(n) * sizeof(double);
 }
 
-static void select_lanes(uint32_t n, double from, const double *restrict number, const double *restrict cx, const double *restrict cy,
+__attribute__((noinline)) static void select_lanes(uint32_t n, double from, const double *restrict number, const double *restrict cx, const double *restrict cy,
                          const double *restrict cz, double *restrict x, double *restrict y, double *restrict z)
 {
     for (uint32_t i = 0; i < n; i++) {

@@ -28,13 +28,15 @@ struct mcr_rays {
  *   parallelogram, disk   corner or centre, normal, dual vectors of the two edges or half axes
  *   sphere         centre, radius, radius^2
  *   ellipsoid      centre, rows of the inverse of the half axes
- *   box            corner, dual vectors of the three edges
+ *   box            corner, unit inward normals of the three faces through it, their distances to the opposite ones
+ *   rectangle across axis 0, 1 or 2: a parallelogram whose edges are along the other two: its coordinate, and its extent along them in cyclic order
  */
 struct mcr_accel_shape {
-    uint32_t kind;
+    uint32_t kind;        /* enum mcr_shape_kind, or one of these */
     uint32_t primitive;
-    double k[12];
+    double k[15];
 };
+#define MCR_ACCEL_RECTANGLE 16u /* + axis */
 
 struct mcr_bvh_node {
     double lo[3], hi[3];  /* rounded outward */
@@ -45,6 +47,7 @@ struct mcr_bvh_node {
 struct mcr_accel {
     uint32_t kind;        /* MCR_ACCEL_LIST or MCR_ACCEL_BVH */
     uint32_t shape_count;
+    int rectangles;       /* there are some */
     struct mcr_accel_shape *shape;            /* in order of their primitive numbers */
     const struct mcr_triangles *triangles;
     /* bvh only */

@@ -37,6 +37,46 @@ static void dual(const double a[3], const double b[3], const double c[3], double
         out[j] = n[j] / volume;
 }
 
+/* The axis that the vector runs along, or -1. */
+static int axis_of(const double v[3])
+{
+    for (int j = 0; j < 3; j++)
+        if (v[j] != 0 && v[(j + 1) % 3] == 0 && v[(j + 2) % 3] == 0)
+            return j;
+    return -1;
+}
+
+/* A parallelogram along the axes is tested with a tenth of the arithmetic. Returns whether it is one. */
+static int rectangle_constants(const struct mcr_shape *shape, struct mcr_accel_shape *to)
+{
+    int first = axis_of(shape->e[0]), second = axis_of(shape->e[1]);
+    if (first < 0 || second < 0)
+        return 0;
+    int axis = 3 - first - second;
+    to->kind = MCR_ACCEL_RECTANGLE + (uint32_t)axis;
+    to->k[0] = shape->c[axis];
+    for (int i = 0; i < 2; i++) {
+        int j = (axis + 1 + i) % 3;
+        double from = shape->c[j], length = shape->e[0][j] + shape->e[1][j]; /* one of them is 0 */
+        to->k[1 + 2 * i] = length > 0 ? from : from + length;
+        to->k[2 + 2 * i] = length > 0 ? from + length : from;
+    }
+    return 1;
+}
+
+static void box_constants(const struct mcr_shape *shape, double *k)
+{
+    for (int i = 0; i < 3; i++) {
+        double *n = k + 3 + 3 * i;
+        cross(shape->e[(i + 1) % 3], shape->e[(i + 2) % 3], n);
+        double length = sqrt(dot(n, n));
+        length = dot(n, shape->e[i]) < 0 ? -length : length;
+        for (int j = 0; j < 3; j++)
+            n[j] /= length;
+        k[12 + i] = dot(n, shape->e[i]);
+    }
+}
+
 static void shape_constants(const struct mcr_shape *shape, struct mcr_accel_shape *to)
 {
     double *k = to->k;
@@ -52,12 +92,18 @@ static void shape_constants(const struct mcr_shape *shape, struct mcr_accel_shap
         k[4] = shape->radius * shape->radius;
         break;
     case MCR_SHAPE_PARALLELOGRAM:
+        if (rectangle_constants(shape, to))
+            break;
+        /* fall through */
     case MCR_SHAPE_DISK:
         memcpy(k + 3, shape->n, 3 * sizeof *k);
         dual(shape->e[0], shape->e[1], shape->n, k + 6);
         dual(shape->e[1], shape->e[0], shape->n, k + 9);
         break;
-    default: /* ellipsoid, box: the inverse of the matrix whose columns are e[0..2] */
+    case MCR_SHAPE_BOX:
+        box_constants(shape, k);
+        break;
+    default: /* ellipsoid: the inverse of the matrix whose columns are e[0..2] */
         dual(shape->e[0], shape->e[1], shape->e[2], k + 3);
         dual(shape->e[1], shape->e[2], shape->e[0], k + 6);
         dual(shape->e[2], shape->e[0], shape->e[1], k + 9);
@@ -296,8 +342,10 @@ struct mcr_accel *mcr_accel_create(struct mcr_arena *arena, const struct mcr_sce
     accel->shape = mcr_arena_alloc(arena, scene->shape_count, sizeof *accel->shape);
     if (!accel->shape)
         return NULL;
-    for (uint32_t i = 0; i < scene->shape_count; i++)
+    for (uint32_t i = 0; i < scene->shape_count; i++) {
         shape_constants(&scene->shape[i], &accel->shape[i]);
+        accel->rectangles |= accel->shape[i].kind >= MCR_ACCEL_RECTANGLE;
+    }
     if (kind == MCR_ACCEL_BVH && build_tree(arena, accel, scene))
         return NULL;
     return accel;

@@ -91,24 +91,53 @@ static inline int kernel_ellipsoid(const double *k, double ox, double oy, double
     return (discriminant >= 0) & (t > 0);
 }
 
-/* Slabs in the box's own coordinates, 0 to 1 along each edge. *face: 0, 1 for axis 0 at 0 and at 1, and so on. */
+/*
+ * The inverses of three cosines with one division, which is what the loops wait for. A ray that runs along a plane to 1e-100 counts as meeting it
+ * that far away: no division by zero, and products of three stay in range.
+ */
+static inline void kernel_inverse(double x, double y, double z, double inverse[3])
+{
+    const double least = 1e-100;
+    double a = fabs(x) > least ? x : least, b = fabs(y) > least ? y : least, c = fabs(z) > least ? z : least;
+    double bc = b * c, all = 1 / (a * bc);
+    inverse[0] = all * bc;
+    inverse[1] = all * (a * c);
+    inverse[2] = all * (a * b);
+}
+
+/* A rectangle across an axis: at coordinate k[0] of that axis (o, inverse), from k[1] to k[2] of the next axis (p, d) and from k[3] to k[4] of the last (q, e). */
+static inline int kernel_rectangle(const double *k, double o, double inverse, double p, double d, double q, double e, double *at)
+{
+    double t = (k[0] - o) * inverse;
+    double a = p + t * d, b = q + t * e;
+    *at = t;
+    return (t > 0) & (a >= k[1]) & (a <= k[2]) & (b >= k[3]) & (b <= k[4]);
+}
+
+/*
+ * Three slabs: unit normals k[3..11] inward from the faces through the corner, which are k[12..14] away from those opposite.
+ * *face: 0, 1 for the faces of axis 0 through the corner and opposite, and so on.
+ */
 static inline int kernel_box(const double *k, double ox, double oy, double oz, double dx, double dy, double dz, double *face, double *at)
 {
-    double cx = ox - k[0], cy = oy - k[1], cz = oz - k[2];
-    double x = k[3] * cx + k[4] * cy + k[5] * cz, ix = 1 / (k[3] * dx + k[4] * dy + k[5] * dz);
-    double y = k[6] * cx + k[7] * cy + k[8] * cz, iy = 1 / (k[6] * dx + k[7] * dy + k[8] * dz);
-    double z = k[9] * cx + k[10] * cy + k[11] * cz, iz = 1 / (k[9] * dx + k[10] * dy + k[11] * dz);
-    double x0 = -x * ix, x1 = (1 - x) * ix, y0 = -y * iy, y1 = (1 - y) * iy, z0 = -z * iz, z1 = (1 - z) * iz;
+    double cx = ox - k[0], cy = oy - k[1], cz = oz - k[2], inverse[3];
+    double x = k[3] * cx + k[4] * cy + k[5] * cz, y = k[6] * cx + k[7] * cy + k[8] * cz, z = k[9] * cx + k[10] * cy + k[11] * cz;
+    kernel_inverse(k[3] * dx + k[4] * dy + k[5] * dz, k[6] * dx + k[7] * dy + k[8] * dz, k[9] * dx + k[10] * dy + k[11] * dz, inverse);
+    double ix = inverse[0], iy = inverse[1], iz = inverse[2];
+    double x0 = -x * ix, x1 = (k[12] - x) * ix, y0 = -y * iy, y1 = (k[13] - y) * iy, z0 = -z * iz, z1 = (k[14] - z) * iz;
     double nx = ix > 0 ? x0 : x1, fx = ix > 0 ? x1 : x0;
     double ny = iy > 0 ? y0 : y1, fy = iy > 0 ? y1 : y0;
     double nz = iz > 0 ? z0 : z1, fz = iz > 0 ? z1 : z0;
-    double enter = nx > ny ? nx : ny;
-    enter = enter > nz ? enter : nz;
-    double leave = fx < fy ? fx : fy;
-    leave = leave < fz ? leave : fz;
+    /* A ray that runs in a side's plane makes NaN of 0 * infinity there: comparisons in this order leave the interval as it is. */
+    double enter = nx > -INFINITY ? nx : -INFINITY;
+    enter = ny > enter ? ny : enter;
+    enter = nz > enter ? nz : enter;
+    double leave = fx < INFINITY ? fx : INFINITY;
+    leave = fy < leave ? fy : leave;
+    leave = fz < leave ? fz : leave;
     int outside = enter > 0;
     double t = outside ? enter : leave;
-    /* A ray that enters along a positive direction meets the face at 0; one that leaves along it, the face at 1. */
+    /* A ray that enters along a positive direction meets the face through the corner; one that leaves along it, the opposite one. */
     double sign = outside ? 1.0 : -1.0;
     double by_x = ix * sign > 0 ? 0 : 1, by_y = iy * sign > 0 ? 2 : 3, by_z = iz * sign > 0 ? 4 : 5;
     double tx = outside ? nx : fx, ty = outside ? ny : fy;

@@ -9,29 +9,40 @@
  */
 struct block {
     const double *ox, *oy, *oz, *dx, *dy, *dz;
+    _Alignas(64) double inverse[3][MCR_ACCEL_BLOCK]; /* of the directions, where there are rectangles */
     _Alignas(64) double t[MCR_ACCEL_BLOCK];
     _Alignas(64) double primitive[MCR_ACCEL_BLOCK]; /* a whole number: as such it takes part in the same selects as t on plain SSE2 */
 };
 
 /* The shapes come in order of their numbers, so that "strictly nearer" leaves ties to the lower one. */
-#define LOOP_OVER_RAYS(KERNEL)                                                                \
-    do {                                                                                      \
-        MCR_LANES                                                                             \
-        for (uint32_t i = 0; i < MCR_ACCEL_BLOCK; i++) {                                      \
-            double t;\
-            int nearer = KERNEL(k, b->ox[i], b->oy[i], b->oz[i], b->dx[i], b->dy[i], b->dz[i], &t) & (t < b->t[i]); \
-            double was = b->primitive[i];                                                    \
-            double best = b->t[i];                                                            \
-            b->primitive[i] = nearer ? number : was;                                        \
-            b->t[i] = nearer ? t : best;                                                    \
-        }                                                                                     \
+#define LOOP_OVER_RAYS(KERNEL)                                                                                                          \
+    do {                                                                                                                                \
+        MCR_LANES                                                                                                                       \
+        for (uint32_t i = 0; i < MCR_ACCEL_BLOCK; i++) {                                                                                \
+            double t, was = b->primitive[i], best = b->t[i];                                                                            \
+            int nearer = KERNEL(k, b->ox[i], b->oy[i], b->oz[i], b->dx[i], b->dy[i], b->dz[i], &t) & (t < best);                        \
+            b->primitive[i] = nearer ? number : was;                                                                                    \
+            b->t[i] = nearer ? t : best;                                                                                                \
+        }                                                                                                                               \
+    } while (0)
+
+/* O, P, Q: the coordinates of the origin, D, E those of the direction, beginning with the rectangle's axis. */
+#define RECTANGLE(AXIS, O, P, D, Q, E)                                                                                                  \
+    do {                                                                                                                                \
+        MCR_LANES                                                                                                                       \
+        for (uint32_t i = 0; i < MCR_ACCEL_BLOCK; i++) {                                                                                \
+            double t, was = b->primitive[i], best = b->t[i];                                                                            \
+            int nearer = kernel_rectangle(k, b->O[i], b->inverse[AXIS][i], b->P[i], b->D[i], b->Q[i], b->E[i], &t) & (t < best);        \
+            b->primitive[i] = nearer ? number : was;                                                                                    \
+            b->t[i] = nearer ? t : best;                                                                                                \
+        }                                                                                                                               \
     } while (0)
 
 static inline __attribute__((always_inline)) void block_shape(const struct mcr_accel_shape *shape, struct block *b)
 {
-    double k[12];
+    double k[15];
     double number = shape->primitive;
-    for (int j = 0; j < 12; j++)
+    for (int j = 0; j < 15; j++)
         k[j] = shape->k[j];
     switch (shape->kind) {
     case MCR_SHAPE_PLANE:
@@ -49,14 +60,21 @@ static inline __attribute__((always_inline)) void block_shape(const struct mcr_a
     case MCR_SHAPE_DISK:
         LOOP_OVER_RAYS(kernel_disk);
         break;
+    case MCR_ACCEL_RECTANGLE:
+        RECTANGLE(0, ox, oy, dy, oz, dz);
+        break;
+    case MCR_ACCEL_RECTANGLE + 1:
+        RECTANGLE(1, oy, oz, dz, ox, dx);
+        break;
+    case MCR_ACCEL_RECTANGLE + 2:
+        RECTANGLE(2, oz, ox, dx, oy, dy);
+        break;
     default:
         MCR_LANES
         for (uint32_t i = 0; i < MCR_ACCEL_BLOCK; i++) {
             double face;
-            double t;
-            int nearer = kernel_box(k, b->ox[i], b->oy[i], b->oz[i], b->dx[i], b->dy[i], b->dz[i], &face, &t) & (t < b->t[i]);
-            double was = b->primitive[i];
-            double best = b->t[i];
+            double t, was = b->primitive[i], best = b->t[i];
+            int nearer = kernel_box(k, b->ox[i], b->oy[i], b->oz[i], b->dx[i], b->dy[i], b->dz[i], &face, &t) & (t < best);
             b->primitive[i] = nearer ? number + face : was;
             b->t[i] = nearer ? t : best;
         }
@@ -84,10 +102,8 @@ static inline __attribute__((always_inline)) void block_triangles(const struct m
         MCR_LANES
         for (uint32_t i = 0; i < MCR_ACCEL_BLOCK; i++) {
             struct mcr_shear s = {{form[0][i], form[1][i], form[2][i]}, {form[3][i], form[4][i], form[5][i]}, {form[6][i], form[7][i], form[8][i]}};
-            double t;
-            int nearer = kernel_triangle(&s, ax, ay, az, bx, by, bz, cx, cy, cz, b->ox[i], b->oy[i], b->oz[i], &t) & (t < b->t[i]);
-            double was = b->primitive[i];
-            double best = b->t[i];
+            double t, was = b->primitive[i], best = b->t[i];
+            int nearer = kernel_triangle(&s, ax, ay, az, bx, by, bz, cx, cy, cz, b->ox[i], b->oy[i], b->oz[i], &t) & (t < best);
             b->primitive[i] = nearer ? number : was;
             b->t[i] = nearer ? t : best;
         }
@@ -112,8 +128,20 @@ static void block_run(const struct mcr_accel *accel, const struct mcr_rays *rays
         b.ox = copy[0], b.oy = copy[1], b.oz = copy[2], b.dx = copy[3], b.dy = copy[4], b.dz = copy[5];
     }
     for (uint32_t i = 0; i < MCR_ACCEL_BLOCK; i++) {
-        b.t[i] = far && i < count ? far[first + i] : INFINITY;
+        b.t[i] = INFINITY;
         b.primitive[i] = -1;
+    }
+    for (uint32_t i = 0; far && i < count; i++)
+        b.t[i] = far[first + i];
+    if (accel->rectangles) {
+        MCR_LANES
+        for (uint32_t i = 0; i < MCR_ACCEL_BLOCK; i++) {
+            double inverse[3];
+            kernel_inverse(b.dx[i], b.dy[i], b.dz[i], inverse);
+            b.inverse[0][i] = inverse[0];
+            b.inverse[1][i] = inverse[1];
+            b.inverse[2][i] = inverse[2];
+        }
     }
     for (uint32_t s = 0; s < accel->shape_count; s++)
         block_shape(&accel->shape[s], &b);

@@ -129,12 +129,11 @@ uint32_t mcr_diagnostics_warnings(const struct mcr_diagnostics *diagnostics)
 
 /* ---- printing ---- */
 
-/* Length of the well-formed UTF-8 sequence of more than one byte at `at`, else 0 (RFC 3629: no surrogates, no overlong forms). */
-static size_t utf8_length(const char *at, size_t left)
+size_t mcr_utf8_length(const char *at, const char *end)
 {
     const unsigned char *b = (const unsigned char *)at;
-    size_t length = b[0] >= 0xc2 && b[0] < 0xe0 ? 2 : (b[0] & 0xf0) == 0xe0 ? 3 : b[0] >= 0xf0 && b[0] < 0xf5 ? 4 : 0;
-    if (!length || length > left)
+    size_t length = b[0] < 0x80 ? 1 : b[0] >= 0xc2 && b[0] < 0xe0 ? 2 : (b[0] & 0xf0) == 0xe0 ? 3 : b[0] >= 0xf0 && b[0] < 0xf5 ? 4 : 0;
+    if (!length || length > (size_t)(end - at))
         return 0;
     for (size_t i = 1; i < length; i++)
         if ((b[i] & 0xc0) != 0x80)
@@ -148,9 +147,9 @@ static size_t utf8_length(const char *at, size_t left)
 static void print_clean(FILE *to, const char *text, size_t length)
 {
     for (size_t i = 0; i < length;) {
-        size_t wide = utf8_length(text + i, length - i);
+        size_t wide = mcr_utf8_length(text + i, text + length);
         unsigned char byte = (unsigned char)text[i];
-        if (wide && !(wide == 2 && byte == 0xc2 && (unsigned char)text[i + 1] < 0xa0)) { /* U+0080 to U+009F: control characters */
+        if (wide > 1 && !(wide == 2 && byte == 0xc2 && (unsigned char)text[i + 1] < 0xa0)) { /* U+0080 to U+009F: control characters */
             fwrite(text + i, 1, wide, to);
             i += wide;
         } else {
@@ -160,15 +159,13 @@ static void print_clean(FILE *to, const char *text, size_t length)
     }
 }
 
-/* Columns that print_clean makes of the text, as blanks that keep tabs; wide glyphs count as one. */
-static uint32_t print_blank(FILE *to, const char *text, size_t length, char fill)
+/* Columns that print_clean makes of the text, printed (if `to` is not NULL) as blanks that keep tabs; wide glyphs count as one. */
+static uint32_t print_blank(FILE *to, const char *text, size_t length)
 {
     uint32_t columns = 0;
     for (size_t i = 0; i < length; columns++) {
-        size_t wide = utf8_length(text + i, length - i);
-        if (fill)
-            fputc(fill, to);
-        else if (to)
+        size_t wide = mcr_utf8_length(text + i, text + length);
+        if (to)
             fputc(text[i] == '\t' ? '\t' : ' ', to);
         i += wide ? wide : 1;
     }
@@ -221,9 +218,9 @@ static void print_excerpt(FILE *to, const struct mcr_place *place, const char *c
     print_clean(to, line + from, until - from);
     fprintf(to, "%s\n", until < length ? "..." : "");
     fprintf(to, "%*s | %s", place->line > 99999 ? snprintf(NULL, 0, "%u", place->line) : 5, "", from ? "   " : "");
-    print_blank(to, line + from, column - from, 0);
+    print_blank(to, line + from, column - from);
     fprintf(to, "%s^", colour);
-    for (uint32_t columns = print_blank(NULL, line + column, marked, 0); columns > 1; columns--)
+    for (uint32_t columns = print_blank(NULL, line + column, marked); columns > 1; columns--)
         fputc('~', to);
     fprintf(to, "%s\n", plain);
 }

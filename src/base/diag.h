@@ -53,4 +53,7 @@ void mcr_diagnostics_print(struct mcr_diagnostics *diagnostics, FILE *to, int co
 /* The nearest of `count` words by Damerau-Levenshtein distance, or NULL if none is close (distance at most a third of the length, at least 1). */
 const char *mcr_nearest_word(const char *word, const char *const *words, size_t count);
 
+/* Length of the well-formed UTF-8 sequence at `at` < end, 1 to 4, or 0 (RFC 3629: no surrogates, no overlong forms). */
+size_t mcr_utf8_length(const char *at, const char *end);
+
 #endif

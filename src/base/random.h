@@ -3,7 +3,8 @@
  * Random numbers as a pure function of (seed, replicate, pixel, sample, dimension): no state, so that threads, order and batch
  * size cannot matter. Each level of the key is a bijection of the level above plus its index times an odd constant:
  *
- *     pixel key  = mix(mix(mix(seed) + replicate * C3) + pixel * C1)
+ *     replicate key = mix(mix(seed) + replicate * C3)
+ *     pixel key  = mix(replicate key + pixel * C1)
  *     path key   = mix(pixel key + sample * C2)
  *     bits       = mix(path key + (dimension + 1) * golden)        (a path's numbers are splitmix64 started at its key)
  *
@@ -26,9 +27,14 @@
 #define MCR_KEY_SAMPLE UINT64_C(0xbb67ae8584caa73b)
 #define MCR_KEY_REPLICATE UINT64_C(0x3c6ef372fe94f82b)
 
-MCR_INLINE uint64_t mcr_pixel_key(uint64_t seed, uint64_t pixel, uint64_t replicate)
+MCR_INLINE uint64_t mcr_replicate_key(uint64_t seed, uint64_t replicate)
 {
-    return mcr_mix64(mcr_mix64(mcr_mix64(seed) + replicate * MCR_KEY_REPLICATE) + pixel * MCR_KEY_PIXEL);
+    return mcr_mix64(mcr_mix64(seed) + replicate * MCR_KEY_REPLICATE);
+}
+
+MCR_INLINE uint64_t mcr_pixel_key(uint64_t replicate_key, uint64_t pixel)
+{
+    return mcr_mix64(replicate_key + pixel * MCR_KEY_PIXEL);
 }
 
 MCR_INLINE uint64_t mcr_path_key(uint64_t pixel_key, uint64_t sample)

@@ -256,8 +256,8 @@ int mcr_command_render(struct mcr_options *options)
         options->output[0] = path ? path : "";
         options->output_count = 1;
     }
-    for (uint32_t i = 0; i < options->output_count; i++)
-        data.output[data.output_count++].path = options->output[i];
+    for (uint32_t i = 0; i < options->output_count; i++) /* failed until written */
+        data.output[data.output_count++] = (struct mcr_report_output){.path = options->output[i], .failed = 1};
     if (!status)
         status = prepare_and_render(&data, &targets);
     for (uint32_t i = 0; i < targets.count; i++)

@@ -7,7 +7,9 @@
 
 #include "core/host.h"
 
-/* Cuts arrays from memory; with memory NULL it only counts. */
+/* Cuts arrays from memory; with memory NULL it only counts. STAGGER keeps lane i of different arrays out of the same set of the first-level cache. */
+#define STAGGER (5 * 64)
+
 struct cutter {
     char *memory;
     size_t used;
@@ -16,7 +18,7 @@ struct cutter {
 static void *cut(struct cutter *c, size_t count, size_t size)
 {
     void *at = c->memory ? c->memory + c->used : NULL;
-    c->used += (count * size + 63) / 64 * 64;
+    c->used += (count * size + 63) / 64 * 64 + STAGGER;
     return at;
 }
 
@@ -63,8 +65,6 @@ static void cut_all(struct cutter *c, struct mcr_batch *b)
         *of_rays[i] = cut(c, rays, sizeof(double));
     b->hit = cut(c, rays, sizeof *b->hit);
     b->source = cut(c, rays, sizeof *b->source);
-    b->miss = cut(c, rays, sizeof *b->miss);
-    b->zone = cut(c, rays, sizeof *b->zone);
     cut_paths(c, &b->state, b->lanes);
     cut_paths(c, &b->sorted, b->lanes);
     for (size_t i = 0; i < sizeof of_points / sizeof *of_points; i++)
@@ -79,7 +79,7 @@ static void cut_all(struct cutter *c, struct mcr_batch *b)
     b->order = cut(c, b->lanes, sizeof *b->order);
     b->range = cut(c, 2 * (size_t)groups, sizeof *b->range);
     b->zone_count = cut(c, 2 * (size_t)groups + 1, sizeof *b->zone_count);
-    b->zone_begin = cut(c, 2 * (size_t)groups + 1, sizeof *b->zone_begin);
+    b->zone_list = cut(c, (2 * (size_t)groups + 1) * rays, sizeof *b->zone_list);
     for (uint32_t k = 0; k < MCR_NUMBERS_MAX; k++)
         b->number[k] = cut(c, b->lanes, sizeof(double));
     b->roulette = cut(c, b->lanes, sizeof(double));
@@ -93,7 +93,6 @@ static void cut_all(struct cutter *c, struct mcr_batch *b)
     b->camera_x = cut(c, rays, sizeof(double));
     b->camera_y = cut(c, rays, sizeof(double));
     b->camera_pixel = cut(c, rays, sizeof *b->camera_pixel);
-    b->camera_replicate = cut(c, rays, sizeof *b->camera_replicate);
     if (core->combines)
         cut_light(c, &b->light, b->lanes);
     b->scratch = cut(c, core->scratch_bytes, 1);

@@ -108,7 +108,6 @@ struct mcr_range {
 struct mcr_job {
     uint64_t first_cell;
     uint32_t cells, paths, begun;
-    uint32_t pending;               /* paths not finished, or not begun */
     int busy;
 };
 
@@ -144,10 +143,10 @@ struct mcr_batch {
     uint32_t *order;                /* point -> ray */
     struct mcr_range *range;
     uint32_t range_count;
-    uint32_t *miss;                 /* rays that hit nothing */
+    const uint32_t *miss;           /* rays that hit nothing */
     uint32_t miss_count;
-    uint32_t *zone_count, *zone_begin; /* 2 * groups + 1 each: those that scatter, those that end, misses */
-    uint32_t *zone;                 /* ray -> zone */
+    uint32_t *zone_count;           /* 2 * groups + 1: those that scatter, those that end, misses */
+    uint32_t *zone_list;            /* the rays of each, room for all of them */
     double *number[MCR_NUMBERS_MAX], *roulette;
     double *wx, *wy, *wz, *density; /* drawn directions */
     double *fr, *fg, *fb;           /* f * cos */
@@ -166,7 +165,6 @@ struct mcr_batch {
     /* for new camera paths */
     double *camera_x, *camera_y;
     uint64_t *camera_pixel;
-    uint32_t *camera_replicate;
     /* counts, summed at the end */
     uint64_t not_finite, not_finite_cell; /* of the pass */
     uint32_t not_finite_sample;
@@ -187,7 +185,7 @@ struct mcr_camera_lanes {
 /* The stage functions, compiled once per instruction set. */
 struct mcr_stages {
     void (*camera)(const struct mcr_scene *scene, const struct mcr_camera_lanes *lanes);
-    void (*path_keys)(uint64_t seed, uint32_t n, const uint64_t *pixel, const uint32_t *replicate, const uint32_t *index, uint64_t *pixel_key,
+    void (*path_keys)(uint64_t replicate_key, uint32_t n, const uint64_t *pixel, const uint32_t *index, uint64_t *pixel_key,
                       uint64_t *path_key);
     /* Groups rays by what they hit: fills order, range, miss. */
     void (*sort)(struct mcr_batch *batch);
@@ -199,7 +197,7 @@ struct mcr_stages {
     void (*background)(struct mcr_batch *batch);
     /* Throughput times f cos / density, and roulette with `u` (NULL: none); fills alive. */
     void (*scatter)(struct mcr_batch *batch, uint32_t begin, uint32_t end, const double *u);
-    /* Makes rays of the living points and appends their lanes to `source`. */
+    /* Makes rays of the living points and lists their lanes in `source`. */
     void (*compact)(struct mcr_batch *batch);
 };
 

@@ -3,16 +3,20 @@
 
 #include <string.h>
 
-/* Adds by pairs: ((0+1)+(2+3))+…, absent samples being 0. */
+/* Adds by pairs, i and i + half at each level, absent samples being 0: a tree of fixed shape that is a few vector additions. */
 static double pairwise(const double v[MCR_CELL_SAMPLES])
 {
-    double s[MCR_CELL_SAMPLES];
-    memcpy(s, v, sizeof s);
-    for (uint32_t half = MCR_CELL_SAMPLES / 2; half; half /= 2)
-        for (uint32_t i = 0; i < half; i++)
-            s[i] = s[2 * i] + s[2 * i + 1];
-    return s[0];
+    double s[MCR_CELL_SAMPLES / 2];
+    for (uint32_t i = 0; i < MCR_CELL_SAMPLES / 2; i++)
+        s[i] = v[i] + v[i + MCR_CELL_SAMPLES / 2];
+    for (uint32_t i = 0; i < MCR_CELL_SAMPLES / 4; i++)
+        s[i] += s[i + MCR_CELL_SAMPLES / 4];
+    for (uint32_t i = 0; i < MCR_CELL_SAMPLES / 8; i++)
+        s[i] += s[i + MCR_CELL_SAMPLES / 8];
+    return s[0] + s[1];
 }
+
+_Static_assert(MCR_CELL_SAMPLES == 16, "the tree has four levels");
 
 void mcr_cell_sum(const double *r, const double *g, const double *b, uint32_t count, struct mcr_cell *cell)
 {

@@ -5,13 +5,13 @@
 void MCR_ISA_NAME(mcr_stage_compact)(struct mcr_batch *batch)
 {
     const struct mcr_surface_points *at = &batch->at;
+    const double *alive = batch->alive;
+    uint32_t *living = batch->source;
     uint32_t rays = 0;
     for (uint32_t r = 0; r < batch->range_count && !batch->range[r].ends; r++)
-        for (uint32_t k = batch->range[r].begin; k < batch->range[r].end; k++) {
-            if (batch->alive[k] > 0)
-                batch->source[rays++] = k;
-            else
-                batch->job[batch->sorted.slot[k] / MCR_JOB_SLOTS].pending--;
+        for (uint32_t k = batch->range[r].begin, end = batch->range[r].end; k < end; k++) {
+            living[rays] = k; /* without a branch: who dies is not to be foreseen */
+            rays += alive[k] > 0;
         }
     batch->rays = rays;
     const uint32_t *source = batch->source;

@@ -1,11 +1,15 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The passes over lanes for disks by solid angle: cones, nodes of the sweep, its cosine series, its inversion, directions. Compiled once per instruction set. */
+/*
+ * The passes over lanes for disks by solid angle: cones, nodes of the sweep, its cosine series, its inversion, directions. Compiled once
+ * per instruction set.
+ */
 #include "core/emitter_disk.h"
 #include "core/emitter_lanes.h"
 
 #define CHUNK MCR_DISK_CHUNK
 
-MCR_INLINE void cones(const struct mcr_emitter_lanes *lanes, const double *restrict k, const int varying, struct mcr_disk_scratch *restrict s)
+MCR_INLINE void cones(const struct mcr_emitter_lanes *lanes, const double *restrict k, const int varying,
+                      struct mcr_disk_scratch *restrict s)
 {
     const double *restrict px = lanes->px, *restrict py = lanes->py, *restrict pz = lanes->pz;
     const uint32_t n = lanes->n;
@@ -73,7 +77,10 @@ static void sweep(uint32_t count, uint32_t nodes, const double *cosine, struct m
         mean[i] *= share;
 }
 
-/* Coefficients of the sine series of the sweep: cosine coefficients over k. Nodes are first folded: even ones see the sums, odd ones the differences. */
+/*
+ * Coefficients of the sine series of the sweep: cosine coefficients over k. Nodes are first folded: even ones see the sums, odd ones the
+ * differences.
+ */
 static void series(uint32_t count, uint32_t nodes, const double *cosine, struct mcr_disk_chunk *c)
 {
     const uint32_t half = nodes / 2;
@@ -100,7 +107,10 @@ static void series(uint32_t count, uint32_t nodes, const double *cosine, struct 
     }
 }
 
-/* Solves mean * phi + sum of series[k] sin(k phi) = target for phi, in whole turns of the disk: phi from 0 to 4 pi. `steps` of Newton's method. */
+/*
+ * Solves mean * phi + sum of series[k] sin(k phi) = target for phi, in whole turns of the disk: phi from 0 to 4 pi. `steps` of Newton's
+ * method.
+ */
 static void invert(uint32_t count, uint32_t nodes, uint32_t steps, const double *restrict u, struct mcr_disk_chunk *c)
 {
     double *restrict phi = c->phi, *restrict b1 = c->b1, *restrict b2 = c->b2, *restrict sine = c->sine, *restrict twice = c->twice;
@@ -139,8 +149,9 @@ static void directions(uint32_t count, const double *restrict v, struct mcr_disk
     const double *restrict phi = c->phi;
     MCR_LANES
     for (uint32_t i = 0; i < count; i++) {
-        double turn = 0.5 * phi[i], x = mcr_cos(turn), y = mcr_sin(turn), round = c->cone[9][i] * (x * x) + c->cone[10][i] * (y * y); /* s^2 - 1 */
-        double square = 1 + round, inverse = 1 / (square + sqrt(square)), sink = v[i] * round * inverse, out = sqrt(v[i] * (2 - sink) * inverse);
+        double turn = 0.5 * phi[i], x = mcr_cos(turn), y = mcr_sin(turn);
+        double round = c->cone[9][i] * (x * x) + c->cone[10][i] * (y * y), square = 1 + round; /* s^2 */
+        double inverse = 1 / (square + sqrt(square)), sink = v[i] * round * inverse, out = sqrt(v[i] * (2 - sink) * inverse);
         double keep = 1 - sink, ax = out * x, ay = out * y;
         double wx = keep * c->cone[0][i] + ax * c->cone[3][i] + ay * c->cone[6][i];
         double wy = keep * c->cone[1][i] + ax * c->cone[4][i] + ay * c->cone[7][i];
@@ -164,8 +175,8 @@ static uint32_t steps_of(uint32_t nodes)
     return nodes == 8 ? 2 : nodes == 16 ? 3 : 4;
 }
 
-void MCR_ISA_NAME(mcr_emitter_disk_draw)(const struct mcr_emitters *all, const struct mcr_emitter_lanes *lanes, const double *k, int varying,
-                                         struct mcr_disk_scratch *s)
+void MCR_ISA_NAME(mcr_emitter_disk_draw)(const struct mcr_emitters *all, const struct mcr_emitter_lanes *lanes, const double *k,
+                                         int varying, struct mcr_disk_scratch *s)
 {
     struct mcr_disk_chunk *c = &s->chunk;
     find_cones(lanes, k, varying, s);
@@ -209,8 +220,8 @@ MCR_INLINE void area_densities(const struct mcr_emitter_lanes *lanes, const doub
     }
 }
 
-void MCR_ISA_NAME(mcr_emitter_disk_density)(const struct mcr_emitters *all, const struct mcr_emitter_lanes *lanes, const double *k, int varying,
-                                            struct mcr_disk_scratch *s)
+void MCR_ISA_NAME(mcr_emitter_disk_density)(const struct mcr_emitters *all, const struct mcr_emitter_lanes *lanes, const double *k,
+                                            int varying, struct mcr_disk_scratch *s)
 {
     struct mcr_disk_chunk *c = &s->chunk;
     find_cones(lanes, k, varying, s);

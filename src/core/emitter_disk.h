@@ -2,20 +2,24 @@
 /*
  * Elliptic disks by solid angle, coaxial or not. Private to the emitters' stage files.
  *
- * Seen from a point, the disk fills an elliptic cone. K = e0 e0' + e1 e1' - C C' (C: from the point to the centre) is the inverse of its quadratic form:
- * with eigenvalues mu1 >= mu2 > 0 > -m the cone is x^2/a^2 + y^2/b^2 <= z^2 in the eigenvectors' frame, a^2 = mu1/m, b^2 = mu2/m. On its boundary
- * (a cos t, b sin t, 1) of length s the solid angle swept around the axis is g dt, g = a b / (s (1 + s)): in p = 2 t an even function of period 2 pi,
+ * Seen from a point, the disk fills an elliptic cone. K = e0 e0' + e1 e1' - C C' (C: from the point to the centre) is the inverse of its
+ * quadratic form: with eigenvalues mu1 >= mu2 > 0 > -m the cone is x^2/a^2 + y^2/b^2 <= z^2 in the eigenvectors' frame, a^2 = mu1/m, b^2 =
+ * mu2/m. On its boundary (a cos t, b sin t, 1) of length s the solid angle swept around the axis is g dt, g = a b / (s (1 + s)): in p = 2 t
+ * an even function of period 2 pi,
  *     s^2 = P + Q cos p,   P = 1 + (a^2 + b^2)/2,   Q = (a^2 - b^2)/2,
- * analytic up to a distance that makes its cosine coefficients fall like q^k, q = Q / (P + sqrt(P^2 - Q^2)). Nodes at the middles of M equal parts give
- * the solid angle to q^(2M) and the sweep, which is inverted by Newton's method, to q^M. Within the sector 1 - cos is uniform. The principal frame is that
- * of I. Guillen, C. Urena, A. King, M. Fajardo, I. Georgiev, J. Lopez-Moreno, A. Jarabo, "Area-preserving parameterizations for spherical ellipses", EGSR 2017.
+ * analytic up to a distance that makes its cosine coefficients fall like q^k, q = Q / (P + sqrt(P^2 - Q^2)). Nodes at the middles of M
+ * equal parts give the solid angle to q^(2M) and the sweep, which is inverted by Newton's method, to q^M. Within the sector 1 - cos is
+ * uniform. The principal frame is that of I. Guillen, C. Urena, A. King, M. Fajardo, I. Georgiev, J. Lopez-Moreno, A. Jarabo,
+ * "Area-preserving parameterizations for spherical ellipses", EGSR 2017.
  */
 #ifndef MCR_CORE_EMITTER_DISK_H
 #define MCR_CORE_EMITTER_DISK_H
 
 #include "core/emitter_flat.h"
 
-/* Rates q up to which M = 8, 16 and 32 nodes are taken: q^M < 5e-11 each time. Beyond, and where Newton's method has not settled, by area. */
+/*
+ * Rates q up to which M = 8, 16 and 32 nodes are taken: q^M < 5e-11 each time. Beyond, and where Newton's method has not settled, by area.
+ */
 #define DISK_RATE_8 0.05
 #define DISK_RATE_16 0.226
 #define DISK_RATE_32 0.475
@@ -33,9 +37,10 @@ struct disk_local {
 };
 
 /*
- * -K's largest eigenvalue m: the root of m = w + v'(S + m)^-1 v with K = (S v; v' -w). The difference is increasing and concave, so that Newton's method
- * from below stays below; it starts from w or from the squared height over the disk, both lower bounds. All terms but w are sums of squares, so that the
- * smallest disks lose nothing. Up to rate 0.475 six steps are enough but for one point in a hundred. Stores the axis, up to its length.
+ * -K's largest eigenvalue m: the root of m = w + v'(S + m)^-1 v with K = (S v; v' -w). The difference is increasing and concave, so that
+ * Newton's method from below stays below; it starts from w or from the squared height over the disk, both lower bounds. All terms but w are
+ * sums of squares, so that the smallest disks lose nothing. Up to rate 0.475 six steps are enough but for one point in a hundred. Stores
+ * the axis, up to its length.
  */
 MCR_INLINE double disk_axis(const struct disk_local *e, double square, double nn, double *x, double *y, int *settled)
 {

@@ -1,18 +1,20 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * Parallelograms, triangles and disks as emitters: crossing, drawing by area and by solid angle, densities. One lane at a time, without branches
- * and calls, so that a loop over lanes is vectorised. Private to the emitters' stage file.
+ * Parallelograms, triangles and disks as emitters: crossing, drawing by area and by solid angle, densities. One lane at a time, without
+ * branches and calls, so that a loop over lanes is vectorised. Private to the emitters' stage file.
  *
  * Solid angle: A. Van Oosterom, J. Strackee, "The solid angle of a plane triangle", IEEE Trans. Biomed. Eng. 30 (1983): for the triangle
  * A, B, C seen from the origin, tan(W/2) = T / D with the triple product T = A.(B x C) and D = |A||B||C| + (A.B)|C| + (B.C)|A| + (C.A)|B|.
- * T is taken as N.(p - c) with N = e0 x e1 known beforehand; it is the same for both triangles of a parallelogram, whose half angles are added as the
- * arguments of the complex numbers D + iT: one arc tangent gives the whole.
+ * T is taken as N.(p - c) with N = e0 x e1 known beforehand; it is the same for both triangles of a parallelogram, whose half angles are
+ * added as the arguments of the complex numbers D + iT: one arc tangent gives the whole.
  *
  * Drawing: the polygon is swept by a fan of arcs from the vertex B; the arc that ends at the point P of the far edge cuts off the area w.
- * With P at the angle t along the great circle from the unit vector a toward m (m = E - (a.E) a for the edge's vector E), the formula above gives
+ * With P at the angle t along the great circle from the unit vector a toward m (m = E - (a.E) a for the edge's vector E), the formula above
+ * gives
  *     tan(w/2) = T' tan(t/2) / ((1 + a.b)|m| + (b.m) tan(t/2)),   T' = a.(b x m),
- * which is solved for tan(t/2) without any angle: J. Arvo, "Stratified sampling of spherical triangles", SIGGRAPH 1995, in half-angle form (C. Peters,
- * "BRDF importance sampling for polygonal lights", ACM TOG 40(4), 2021, section 4, does alike). No term cancels for small triangles, where Arvo's do.
+ * which is solved for tan(t/2) without any angle: J. Arvo, "Stratified sampling of spherical triangles", SIGGRAPH 1995, in half-angle form
+ * (C. Peters, "BRDF importance sampling for polygonal lights", ACM TOG 40(4), 2021, section 4, does alike). No term cancels for small
+ * triangles, where Arvo's do.
  * Along the arc the cosine to B is uniform; it is taken from the chord |b - c'|^2 = 2 (1 - b.c').
  */
 #ifndef MCR_CORE_EMITTER_FLAT_H
@@ -22,9 +24,10 @@
 #include "core/emitters.h"
 
 /*
- * Below these limits points are drawn by area instead, the same in draw and density. A light of 1e-8 sr is so small that area and solid angle are alike
- * to 1e-4 (its measure would hold: the error is 7e-16 / (cos sin) at all sizes). A point lower over the plane than 2^-14 of the farthest vertex sees
- * it at a grazing angle or has it at its nose; above, the measure errs by at most 2.3e-12. Both figures: tests/core/emitters_measure.c.
+ * Below these limits points are drawn by area instead, the same in draw and density. A light of 1e-8 sr is so small that area and solid
+ * angle are alike to 1e-4 (its measure would hold: the error is 7e-16 / (cos sin) at all sizes). A point lower over the plane than 2^-14 of
+ * the farthest vertex sees it at a grazing angle or has it at its nose; above, the measure errs by at most 2.3e-12. Both figures:
+ * tests/core/emitters_measure.c.
  */
 #define STEADY_HALF_ANGLE 5e-9
 #define STEADY_HEIGHT_SQUARED 0x1p-28
@@ -58,10 +61,12 @@ MCR_INLINE double flat_height(const struct flat *f, double px, double py, double
 }
 
 /*
- * 1 where the ray crosses. Coordinates (a, b) along the edges are compared after multiplication by the positive denominator of the ray's length.
+ * 1 where the ray crosses. Coordinates (a, b) along the edges are compared after multiplication by the positive denominator of the ray's
+ * length.
  * dual: the two dual vectors.
  */
-MCR_INLINE int flat_crossed(uint32_t kind, const struct flat *f, const double *dual, double px, double py, double pz, double dx, double dy, double dz)
+MCR_INLINE int flat_crossed(uint32_t kind, const struct flat *f, const double *dual, double px, double py, double pz, double dx, double dy,
+                            double dz)
 {
     double fx = px - f->cx, fy = py - f->cy, fz = pz - f->cz;
     double height = f->nx * fx + f->ny * fy + f->nz * fz, toward = f->nx * dx + f->ny * dy + f->nz * dz;
@@ -78,11 +83,12 @@ MCR_INLINE int flat_crossed(uint32_t kind, const struct flat *f, const double *d
     return seen & inside & (sink > 0);
 }
 
-/* The density by area of a direction that crosses: t^2 / (area cos). */
+/* The density by area of a direction that crosses: t^2 / (area cos). As all densities of directions, 0 where the emitter is not seen. */
 MCR_INLINE double flat_area_density(const struct flat *f, double px, double py, double pz, double dx, double dy, double dz)
 {
     double height = flat_height(f, px, py, pz), sink = fabs(f->nx * dx + f->ny * dy + f->nz * dz);
-    return f->factor * (height * height) / (sink * sink * sink);
+    double density = f->factor * (height * height) / (sink * sink * sink);
+    return ((height > f->above) | (height < f->below)) & (sink > 0) ? density : 0;
 }
 
 /* The distance to the plane. */
@@ -116,7 +122,8 @@ MCR_INLINE struct drawn flat_draw_area(uint32_t kind, const struct flat *f, doub
 }
 
 /*
- * The argument of re + i im for im >= 0, in [0, pi], to 3 roundings: mcr_atan2 without its second division, signs and special cases (its polynomial).
+ * The argument of re + i im for im >= 0, in [0, pi], to 3 roundings: mcr_atan2 without its second division, signs and special cases (its
+ * polynomial).
  * Divisions and roots are what the lanes wait for here.
  */
 MCR_INLINE double upper_argument(double im, double re)
@@ -135,7 +142,10 @@ MCR_INLINE double upper_argument(double im, double re)
     return re < 0 ? MCR_PI - angle : angle;
 }
 
-/* Sine and cosine of x in [0, pi], from a quarter of it (the polynomials of mcr_sin and mcr_cos) by doubling twice: errors below 1e-15, of the sine relative. */
+/*
+ * Sine and cosine of x in [0, pi], from a quarter of it (the polynomials of mcr_sin and mcr_cos) by doubling twice: errors below 1e-15, of
+ * the sine relative.
+ */
 MCR_INLINE void half_turn(double x, double *sine, double *cosine)
 {
     double y = 0.25 * x, z = y * y, z2 = z * z, z4 = z2 * z2;
@@ -150,7 +160,10 @@ MCR_INLINE void half_turn(double x, double *sine, double *cosine)
     *cosine = 1 - 2 * sine2 * sine2;
 }
 
-/* The vertices seen from the point: lengths and dot products. Vertex 2 of a triangle is c + e1; of a parallelogram, c + e0 + e1 and vertex 3 is c + e1. */
+/*
+ * The vertices seen from the point: lengths and dot products. Vertex 2 of a triangle is c + e1; of a parallelogram, c + e0 + e1 and vertex
+ * 3 is c + e1.
+ */
 struct fan {
     double x[4], y[4], z[4], length[4];
     double d01, d02, d12, d03, d23;
@@ -172,6 +185,7 @@ MCR_INLINE void fan_triangle(const struct flat *k, struct fan *f)
     f->d01 = DOT(f, 0, 1), f->d02 = DOT(f, 0, 2), f->d12 = DOT(f, 1, 2);
     f->re = f->length[0] * f->length[1] * f->length[2] + f->d01 * f->length[2] + f->d12 * f->length[0] + f->d02 * f->length[1];
     f->im = f->triple;
+    f->first = f->re, f->second = 0; /* no second triangle */
     f->steady = f->triple * f->triple > STEADY_HEIGHT_SQUARED * (k->nn * far);
 }
 
@@ -221,12 +235,13 @@ MCR_INLINE double flat_solid_density(uint32_t kind, const struct flat *k, double
 {
     struct fan f = fan_measure(kind, k, px, py, pz);
     double by_area = flat_area_density(k, px, py, pz, dx, dy, dz), by_angle = 0.5 / f.half;
+    by_angle = f.seen ? by_angle : 0;
     return f.steady ? by_angle : by_area;
 }
 
 /*
- * Drawing goes over the lanes three times, since the chain from the vertices to the direction is longer than what a processor holds in flight:
- * flat_draw_open, flat_draw_angle, flat_draw_sweep. What they hand over:
+ * Drawing goes over the lanes three times, since the chain from the vertices to the direction is longer than what a processor holds in
+ * flight: flat_draw_open, flat_draw_angle, flat_draw_sweep. What they hand over:
  */
 struct sweep {
     double length0, length1, length2, d01, d02, triple, first, re, im; /* of struct fan */
@@ -237,7 +252,8 @@ struct sweep {
 MCR_INLINE struct sweep flat_draw_open(uint32_t kind, const struct flat *k, double px, double py, double pz)
 {
     struct fan f = fan_open(kind, k, px, py, pz);
-    struct sweep s = {f.length[0], f.length[1], f.length[2], f.d01, f.d02, f.triple, f.first, f.re, f.im, 0, 0, f.seen ? (f.steady ? 1 : NOT_STEADY) : 0};
+    struct sweep s = {f.length[0], f.length[1], f.length[2], f.d01, f.d02, f.triple, f.first, f.re, f.im, 0, 0,
+                      f.seen ? (f.steady ? 1 : NOT_STEADY) : 0};
     return s;
 }
 
@@ -248,7 +264,8 @@ MCR_INLINE void flat_draw_angle(struct sweep *s, double u)
     s->half = s->half > 0 ? (half > STEADY_HALF_ANGLE ? half : NOT_STEADY) : s->half;
 }
 
-MCR_INLINE struct drawn flat_draw_sweep(uint32_t kind, const struct flat *k, const struct sweep *s, double px, double py, double pz, double v)
+MCR_INLINE struct drawn flat_draw_sweep(uint32_t kind, const struct flat *k, const struct sweep *s, double px, double py, double pz,
+                                        double v)
 {
     double x0 = k->cx - px, y0 = k->cy - py, z0 = k->cz - pz, ax = x0 + k->ux, ay = y0 + k->uy, az = z0 + k->uz, ex, ey, ez;
     double sine = s->sine, cosine = s->cosine, length = s->length1, dot = s->d01;
@@ -265,7 +282,10 @@ MCR_INLINE struct drawn flat_draw_sweep(uint32_t kind, const struct flat *k, con
         length = second ? s->length2 : length;
         dot = second ? s->d02 : dot;
     }
-    /* With A and m = |A|^2 E - (A.E) A not brought to unit length, tan(t/2) = x |m| / y. One division serves 1/|A|, 1/|B| and 1/(x^2 m^2 + y^2). */
+    /*
+     * With A and m = |A|^2 E - (A.E) A not brought to unit length, tan(t/2) = x |m| / y. One division serves 1/|A|, 1/|B| and 1/(x^2 m^2 +
+     * y^2).
+     */
     double square = length * length, along = ax * ex + ay * ey + az * ez;
     double mx = square * ex - along * ax, my = square * ey - along * ay, mz = square * ez - along * az;
     double lengths = length * s->length0, x = (lengths + dot) * sine;

@@ -93,21 +93,21 @@ void MCR_ISA_NAME(mcr_emitter_seen)(const struct mcr_emitters *all, uint32_t e, 
         MCR_LANES
         for (uint32_t i = 0; i < n; i++) {
             double height = ball_height(&s, px[i], py[i], pz[i]);
-            seen[i] = (height > above) | (height < below) ? 1.0 : 0.0;
+            seen[i] = ((height > above) | (height < below)) ? 1.0 : 0.0;
         }
     } else if (all->emitter[e].kind == MCR_EMITTER_ELLIPSOID) {
         const struct egg s = egg_load(k, 1);
         MCR_LANES
         for (uint32_t i = 0; i < n; i++) {
             double height = egg_ray(&s, px[i], py[i], pz[i], 0, 0, 0).height;
-            seen[i] = (height > above) | (height < below) ? 1.0 : 0.0;
+            seen[i] = ((height > above) | (height < below)) ? 1.0 : 0.0;
         }
     } else {
         const struct flat f = flat_load(k, 1);
         MCR_LANES
         for (uint32_t i = 0; i < n; i++) {
             double height = flat_height(&f, px[i], py[i], pz[i]);
-            seen[i] = (height > above) | (height < below) ? 1.0 : 0.0;
+            seen[i] = ((height > above) | (height < below)) ? 1.0 : 0.0;
         }
     }
 }
@@ -183,7 +183,8 @@ static void density_egg(int alone, const struct mcr_emitter_lanes *lanes, const 
         BY_VARYING(density_egg_area, lanes);
 }
 
-void MCR_ISA_NAME(mcr_emitter_density)(const struct mcr_emitters *all, uint32_t kind, uint32_t by, int alone, const struct mcr_emitter_lanes *lanes,
+void MCR_ISA_NAME(mcr_emitter_density)(const struct mcr_emitters *all, uint32_t kind, uint32_t by, int alone,
+                                       const struct mcr_emitter_lanes *lanes,
                                        const double *k, int varying, struct mcr_solid_scratch *scratch)
 {
     if (kind == MCR_EMITTER_SPHERE)
@@ -255,15 +256,16 @@ MCR_INLINE void draw_flat_area(uint32_t kind, const struct mcr_emitter_lanes *la
 }
 
 /* The members of struct sweep in rows. */
-#define SWEEP_OUT(row, s)                                                                                                                     \
-    (row)[0][i] = (s).length0, (row)[1][i] = (s).length1, (row)[2][i] = (s).length2, (row)[3][i] = (s).d01, (row)[4][i] = (s).d02,              \
-    (row)[5][i] = (s).triple, (row)[6][i] = (s).first, (row)[7][i] = (s).re, (row)[8][i] = (s).im, (row)[11][i] = (s).half
-#define SWEEP_IN(row)                                                                                                                         \
-    {(row)[0][i], (row)[1][i], (row)[2][i], (row)[3][i], (row)[4][i], (row)[5][i], (row)[6][i], (row)[7][i], (row)[8][i],                        \
-     (row)[9][i], (row)[10][i], (row)[11][i]}
+#define SWEEP_OUT(row, s)                                                                                                      \
+    (row)[0][i] = (s).length0, (row)[1][i] = (s).length1, (row)[2][i] = (s).length2, (row)[3][i] = (s).d01,                     \
+    (row)[4][i] = (s).d02, (row)[5][i] = (s).triple, (row)[6][i] = (s).first, (row)[7][i] = (s).re, (row)[8][i] = (s).im,       \
+    (row)[11][i] = (s).half
+#define SWEEP_IN(row)                                                                                                          \
+    {(row)[0][i], (row)[1][i], (row)[2][i], (row)[3][i], (row)[4][i],  (row)[5][i],                                             \
+     (row)[6][i], (row)[7][i], (row)[8][i], (row)[9][i], (row)[10][i], (row)[11][i]}
 
-MCR_INLINE void draw_flat_solid(uint32_t kind, mcr_emitter_row *restrict row, const struct mcr_emitter_lanes *lanes, const double *restrict k,
-                                const int varying)
+MCR_INLINE void draw_flat_solid(uint32_t kind, mcr_emitter_row *restrict row, const struct mcr_emitter_lanes *lanes,
+                                const double *restrict k, const int varying)
 {
     ARRAYS(lanes);
     const double *restrict u = lanes->u, *restrict v = lanes->v;
@@ -333,8 +335,8 @@ static void draw_flat(uint32_t kind, uint32_t by, const struct mcr_emitter_lanes
         BY_VARYING(draw_flat_solid, MCR_EMITTER_PARALLELOGRAM, row, lanes);
 }
 
-void MCR_ISA_NAME(mcr_emitter_draw)(const struct mcr_emitters *all, uint32_t kind, uint32_t by, int alone, const struct mcr_emitter_lanes *lanes,
-                                    const double *k, int varying, struct mcr_solid_scratch *scratch)
+void MCR_ISA_NAME(mcr_emitter_draw)(const struct mcr_emitters *all, uint32_t kind, uint32_t by, int alone,
+                                    const struct mcr_emitter_lanes *lanes, const double *k, int varying, struct mcr_solid_scratch *scratch)
 {
     if (kind == MCR_EMITTER_DISK && by == MCR_LIGHT_BY_SOLID_ANGLE)
         MCR_ISA_NAME(mcr_emitter_disk_draw)(all, lanes, k, varying, &scratch->disk);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * Working memory of the emitters' stage files, and what they share: the services work on blocks of lanes that stay in the first cache; lanes for which something
- * expensive is to be done are listed, gathered, computed side by side and scattered.
+ * Working memory of the emitters' stage files, and what they share: the services work on blocks of lanes that stay in the first cache;
+ * lanes for which something expensive is to be done are listed, gathered, computed side by side and scattered.
  */
 #ifndef MCR_CORE_EMITTER_LANES_H
 #define MCR_CORE_EMITTER_LANES_H
@@ -57,15 +57,18 @@ struct mcr_solid_scratch {
 };
 
 /*
- * emitter_tree.c: more than MCR_EMITTERS_LISTED emitters are put into a tree and into its order, halved down to leaves of MCR_EMITTER_LEAF at most; its depth is
- * below MCR_EMITTER_DEPTH for any 32-bit count. Returns 0, or -1 when memory is short.
+ * emitter_tree.c: more than MCR_EMITTERS_LISTED emitters are put into a tree and into its order, halved down to leaves of MCR_EMITTER_LEAF
+ * at most; its depth is below MCR_EMITTER_DEPTH for any 32-bit count. Returns 0, or -1 when memory is short.
  */
 #define MCR_EMITTERS_LISTED 32u
 #define MCR_EMITTER_LEAF 4u
 #define MCR_EMITTER_DEPTH 32u
 int mcr_emitter_tree_build(struct mcr_emitters *all, struct mcr_arena *arena);
 
-/* Walking the tree: inverse directions of the block, the lanes that each level's box is crossed by, and nodes still to visit with their parents' lanes. */
+/*
+ * Walking the tree: inverse directions of the block, the lanes that each level's box is crossed by, and nodes still to visit with their
+ * parents' lanes.
+ */
 struct mcr_emitter_walk {
     mcr_emitter_row ix, iy, iz, sum, wx, wy, wz, px, py, pz;
     int64_t chosen[MCR_EMITTER_BLOCK];
@@ -94,18 +97,19 @@ void MCR_ISA_NAME(mcr_emitter_seen)(const struct mcr_emitters *all, uint32_t e, 
  * For lanes of one kind; `varying` tells whether constant j of lane i is k[j * MCR_EMITTER_BLOCK + i] or k[j].
  * density: of directions that cross. `alone`: the density of the one point at `distance`.
  */
-void MCR_ISA_NAME(mcr_emitter_density)(const struct mcr_emitters *all, uint32_t kind, uint32_t by, int alone, const struct mcr_emitter_lanes *lanes,
+void MCR_ISA_NAME(mcr_emitter_density)(const struct mcr_emitters *all, uint32_t kind, uint32_t by, int alone,
+                                       const struct mcr_emitter_lanes *lanes,
                                        const double *k, int varying, struct mcr_solid_scratch *scratch);
 /* distance: to what is seen in direction w. */
 void MCR_ISA_NAME(mcr_emitter_distance)(uint32_t kind, const struct mcr_emitter_lanes *lanes, const double *k, int varying);
 /* Draws w, density and distance (0 where it was drawn by solid angle); density NOT_STEADY: is to be drawn by area. */
-void MCR_ISA_NAME(mcr_emitter_draw)(const struct mcr_emitters *all, uint32_t kind, uint32_t by, int alone, const struct mcr_emitter_lanes *lanes,
-                                    const double *k, int varying, struct mcr_solid_scratch *scratch);
+void MCR_ISA_NAME(mcr_emitter_draw)(const struct mcr_emitters *all, uint32_t kind, uint32_t by, int alone,
+                                    const struct mcr_emitter_lanes *lanes, const double *k, int varying, struct mcr_solid_scratch *scratch);
 
 /* emitter_disk.c: these two for disks by solid angle. */
-void MCR_ISA_NAME(mcr_emitter_disk_density)(const struct mcr_emitters *all, const struct mcr_emitter_lanes *lanes, const double *k, int varying,
-                                            struct mcr_disk_scratch *scratch);
-void MCR_ISA_NAME(mcr_emitter_disk_draw)(const struct mcr_emitters *all, const struct mcr_emitter_lanes *lanes, const double *k, int varying,
-                                         struct mcr_disk_scratch *scratch);
+void MCR_ISA_NAME(mcr_emitter_disk_density)(const struct mcr_emitters *all, const struct mcr_emitter_lanes *lanes, const double *k,
+                                            int varying, struct mcr_disk_scratch *scratch);
+void MCR_ISA_NAME(mcr_emitter_disk_draw)(const struct mcr_emitters *all, const struct mcr_emitter_lanes *lanes, const double *k,
+                                         int varying, struct mcr_disk_scratch *scratch);
 
 #endif

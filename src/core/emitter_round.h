@@ -2,10 +2,11 @@
 /*
  * Spheres and ellipsoids as emitters. One lane at a time, without branches and calls. Private to the emitters' stage file.
  *
- * By area the density of a direction is the sum over both crossings, the far half included. By solid angle a sphere is a cone: P. Shirley, C. Wang,
- * K. Zimmerman, "Monte Carlo techniques for direct lighting calculations", ACM TOG 15(1), 1996; 1 - cos is formed as sin^2 / (1 + cos), so that
- * it keeps its digits for the smallest spheres. Seen from inside, a sphere is drawn by area; so is an ellipsoid always, as the image of the unit
- * sphere uniform *there*: its density over the area at E s is 1 / (4 pi |det E| |E^-T s|), and over solid angle r^2 / (4 pi |det E| |s.E^-1 w|).
+ * By area the density of a direction is the sum over both crossings, the far half included. By solid angle a sphere is a cone: P. Shirley,
+ * C. Wang, K. Zimmerman, "Monte Carlo techniques for direct lighting calculations", ACM TOG 15(1), 1996; 1 - cos is formed as sin^2 / (1 +
+ * cos), so that it keeps its digits for the smallest spheres. Seen from inside, a sphere is drawn by area; so is an ellipsoid always, as
+ * the image of the unit sphere uniform *there*: its density over the area at E s is 1 / (4 pi |det E| |E^-T s|), and over solid angle r^2 /
+ * (4 pi |det E| |s.E^-1 w|).
  */
 #ifndef MCR_CORE_EMITTER_ROUND_H
 #define MCR_CORE_EMITTER_ROUND_H
@@ -29,7 +30,16 @@ MCR_INLINE double ball_height(const struct ball *s, double px, double py, double
     return fx * fx + fy * fy + fz * fz - s->square;
 }
 
-/* Along the ray: the middle of the two crossings, and the square of half their distance (<= 0: none), from the part that is perpendicular to the ray. */
+MCR_INLINE int ball_seen(const struct ball *s, double px, double py, double pz)
+{
+    double height = ball_height(s, px, py, pz);
+    return (height > s->above) | (height < s->below);
+}
+
+/*
+ * Along the ray: the middle of the two crossings, and the square of half their distance (<= 0: none), from the part that is perpendicular
+ * to the ray.
+ */
 MCR_INLINE double ball_middle(const struct ball *s, double px, double py, double pz, double dx, double dy, double dz, double *discriminant)
 {
     double fx = px - s->cx, fy = py - s->cy, fz = pz - s->cz, middle = -(fx * dx + fy * dy + fz * dz);
@@ -41,8 +51,7 @@ MCR_INLINE double ball_middle(const struct ball *s, double px, double py, double
 MCR_INLINE int ball_crossed(const struct ball *s, double px, double py, double pz, double dx, double dy, double dz)
 {
     double height = ball_height(s, px, py, pz), discriminant, middle = ball_middle(s, px, py, pz, dx, dy, dz, &discriminant);
-    int seen = (height > s->above) | (height < s->below);
-    return seen & (discriminant > 0) & ((height < 0) | (middle > 0)); /* from inside every ray crosses */
+    return ball_seen(s, px, py, pz) & (discriminant > 0) & ((height < 0) | (middle > 0)); /* from inside every ray crosses */
 }
 
 /* Sum of r^2 over the crossings ahead, over area times cosine: the cosine is root / R at both. */
@@ -50,7 +59,7 @@ MCR_INLINE double ball_area_density(const struct ball *s, double px, double py, 
 {
     double discriminant, middle = ball_middle(s, px, py, pz, dx, dy, dz, &discriminant), root = sqrt(discriminant > 0 ? discriminant : 0);
     double near = middle - root, far = middle + root, sum = (near > 0 ? near * near : 0) + (far > 0 ? far * far : 0);
-    return discriminant > 0 ? s->spread * sum / root : 0;
+    return ball_seen(s, px, py, pz) & (discriminant > 0) ? s->spread * sum / root : 0;
 }
 
 /* 1 / (2 pi (1 - cos)) of the cone; only outside. */
@@ -63,6 +72,7 @@ MCR_INLINE double ball_solid_density(const struct ball *s, double px, double py,
 {
     double height = ball_height(s, px, py, pz), outside = height > 0 ? height : 0;
     double cone = ball_cone_density(s, outside + s->square, outside), by_area = ball_area_density(s, px, py, pz, dx, dy, dz);
+    cone = ball_seen(s, px, py, pz) ? cone : 0;
     return height > 0 ? cone : by_area;
 }
 
@@ -74,11 +84,12 @@ MCR_INLINE double ball_distance(const struct ball *s, double px, double py, doub
 }
 
 /* Density of the point at `distance` alone, by area. */
-MCR_INLINE double ball_point_density(const struct ball *s, double px, double py, double pz, double dx, double dy, double dz, double distance)
+MCR_INLINE double ball_point_density(const struct ball *s, double px, double py, double pz, double dx, double dy, double dz,
+                                     double distance)
 {
     double qx = px - s->cx + distance * dx, qy = py - s->cy + distance * dy, qz = pz - s->cz + distance * dz;
     double cosine = fabs(qx * dx + qy * dy + qz * dz); /* times R */
-    return cosine > 0 ? s->spread * (distance * distance) / cosine : 0;
+    return ball_seen(s, px, py, pz) & (cosine > 0) ? s->spread * (distance * distance) / cosine : 0;
 }
 
 MCR_INLINE void unit_sphere(double u, double v, double *x, double *y, double *z)
@@ -93,13 +104,13 @@ MCR_INLINE void unit_sphere(double u, double v, double *x, double *y, double *z)
 /* alone: the density is that of the drawn point, not of all points in its direction. */
 MCR_INLINE struct drawn ball_draw_area(const struct ball *s, int alone, double px, double py, double pz, double u, double v)
 {
-    double x, y, z, height = ball_height(s, px, py, pz);
+    double x, y, z;
     unit_sphere(u, v, &x, &y, &z);
     double qx = s->cx - px + s->radius * x, qy = s->cy - py + s->radius * y, qz = s->cz - pz + s->radius * z;
     double distance = sqrt(qx * qx + qy * qy + qz * qz), scale = 1 / distance;
     qx *= scale, qy *= scale, qz *= scale;
     double density = alone ? ball_point_density(s, px, py, pz, qx, qy, qz, distance) : ball_area_density(s, px, py, pz, qx, qy, qz);
-    int good = ((height > s->above) | (height < s->below)) & (density > 0) & (density < MCR_INFINITY);
+    int good = (density > 0) & (density < MCR_INFINITY);
     struct drawn d = {good ? qx : 0, good ? qy : 0, good ? qz : 0, good ? density : 0, good ? distance : 0};
     return d;
 }
@@ -108,7 +119,8 @@ MCR_INLINE struct drawn ball_draw_area(const struct ball *s, int alone, double p
 MCR_INLINE struct drawn ball_draw_solid(const struct ball *s, double px, double py, double pz, double u, double v)
 {
     double height = ball_height(s, px, py, pz), outside = height > 0 ? height : 0, square = outside + s->square, distance = sqrt(square);
-    double grown = square + sqrt(square * outside), inverse = 1 / (grown * distance), open = s->square * inverse * distance, along = inverse * grown;
+    double grown = square + sqrt(square * outside), inverse = 1 / (grown * distance), open = s->square * inverse * distance,
+           along = inverse * grown;
     double x, y, rho = 1 - mcr_disk_from_square(u, v, &x, &y), sink = rho * open, out = sqrt(open * (2 - sink)), wx, wy, wz;
     int seen = (height > s->above) | (height < s->below), good = seen & (height > 0);
     double ax = (s->cx - px) * along, ay = (s->cy - py) * along, az = (s->cz - pz) * along;
@@ -153,6 +165,11 @@ MCR_INLINE struct egg_ray egg_ray(const struct egg *s, double px, double py, dou
     return r;
 }
 
+MCR_INLINE int egg_seen(const struct egg *s, const struct egg_ray *r)
+{
+    return (r->height > s->above) | (r->height < s->below);
+}
+
 /* As ball_middle, with `a` the square of the direction's length: crossings at middle +- sqrt(discriminant / a). */
 MCR_INLINE double egg_middle(const struct egg_ray *r, double *a, double *discriminant)
 {
@@ -167,8 +184,7 @@ MCR_INLINE int egg_crossed(const struct egg *s, double px, double py, double pz,
 {
     struct egg_ray r = egg_ray(s, px, py, pz, dx, dy, dz);
     double a, discriminant, middle = egg_middle(&r, &a, &discriminant);
-    int seen = (r.height > s->above) | (r.height < s->below);
-    return seen & (discriminant > 0) & ((r.height < 0) | (middle > 0));
+    return egg_seen(s, &r) & (discriminant > 0) & ((r.height < 0) | (middle > 0));
 }
 
 /* |s.E^-1 w| is sqrt(a discriminant) at both crossings. */
@@ -178,14 +194,14 @@ MCR_INLINE double egg_area_density(const struct egg *s, double px, double py, do
     double a, discriminant, middle = egg_middle(&r, &a, &discriminant);
     double slope = sqrt(a * (discriminant > 0 ? discriminant : 0)), root = slope / a;
     double near = middle - root, far = middle + root, sum = (near > 0 ? near * near : 0) + (far > 0 ? far * far : 0);
-    return discriminant > 0 ? s->spread * sum / slope : 0;
+    return egg_seen(s, &r) & (discriminant > 0) ? s->spread * sum / slope : 0;
 }
 
 MCR_INLINE double egg_point_density(const struct egg *s, double px, double py, double pz, double dx, double dy, double dz, double distance)
 {
     struct egg_ray r = egg_ray(s, px, py, pz, dx, dy, dz);
     double slope = fabs((r.fx + distance * r.dx) * r.dx + (r.fy + distance * r.dy) * r.dy + (r.fz + distance * r.dz) * r.dz);
-    return slope > 0 ? s->spread * (distance * distance) / slope : 0;
+    return egg_seen(s, &r) & (slope > 0) ? s->spread * (distance * distance) / slope : 0;
 }
 
 MCR_INLINE struct drawn egg_draw_area(const struct egg *s, int alone, double px, double py, double pz, double u, double v)
@@ -195,9 +211,8 @@ MCR_INLINE struct drawn egg_draw_area(const struct egg *s, int alone, double px,
     double qx = s->cx - px + s->e[0] * x + s->e[3] * y + s->e[6] * z, qy = s->cy - py + s->e[1] * x + s->e[4] * y + s->e[7] * z;
     double qz = s->cz - pz + s->e[2] * x + s->e[5] * y + s->e[8] * z, distance = sqrt(qx * qx + qy * qy + qz * qz), scale = 1 / distance;
     qx *= scale, qy *= scale, qz *= scale;
-    double height = egg_ray(s, px, py, pz, qx, qy, qz).height;
     double density = alone ? egg_point_density(s, px, py, pz, qx, qy, qz, distance) : egg_area_density(s, px, py, pz, qx, qy, qz);
-    int good = ((height > s->above) | (height < s->below)) & (density > 0) & (density < MCR_INFINITY);
+    int good = (density > 0) & (density < MCR_INFINITY);
     struct drawn d = {good ? qx : 0, good ? qy : 0, good ? qz : 0, good ? density : 0, good ? distance : 0};
     return d;
 }

@@ -22,7 +22,10 @@
 
 /* ---- lists of lanes ------------------------------------------------------------------------------------------------ */
 
-/* Repeats the first entry up to a whole vector, since a few odd lanes cost as much one by one. Returns the new length; there is room for it. */
+/*
+ * Repeats the first entry up to a whole vector, since a few odd lanes cost as much one by one. Returns the new length; there is room for
+ * it.
+ */
 static uint32_t pad_list(uint32_t count, int32_t *list)
 {
     while (count % MCR_LANE_PAD)
@@ -114,7 +117,8 @@ static void gather_constants(const struct mcr_emitters *all, const int64_t *rest
 /* The points of a block: lanes base .. base+n-1 of the caller's arrays. */
 static struct mcr_emitter_lanes block_points(const struct mcr_points *at, uint32_t base)
 {
-    struct mcr_emitter_lanes lanes = {.n = MINIMUM(at->n - base, MCR_EMITTER_BLOCK), .px = at->px + base, .py = at->py + base, .pz = at->pz + base};
+    struct mcr_emitter_lanes lanes = {.n = MINIMUM(at->n - base, MCR_EMITTER_BLOCK), .px = at->px + base, .py = at->py + base,
+                                      .pz = at->pz + base};
     return lanes;
 }
 
@@ -153,7 +157,10 @@ static void invert_total(uint32_t n, double *restrict total)
     }
 }
 
-/* Few emitters: the first whose running sum of probabilities passes number * total. The last sum is the total itself, which the product cannot reach. */
+/*
+ * Few emitters: the first whose running sum of probabilities passes number * total. The last sum is the total itself, which the product
+ * cannot reach.
+ */
 static void choose_few(const struct mcr_emitters *all, const struct mcr_emitter_lanes *points, const double *restrict number,
                        struct mcr_emitter_scratch *s)
 {
@@ -200,8 +207,8 @@ static void choose_many(const struct mcr_emitters *all, uint32_t n, const double
 /* ---- drawing ------------------------------------------------------------------------------------------------------- */
 
 /* Draws in lanes of one kind; where solid angle is not steady, by area. */
-static void draw_lanes(const struct mcr_emitters *all, uint32_t kind, uint32_t by, int alone, const struct mcr_emitter_lanes *lanes, const double *k,
-                       int varying, struct mcr_emitter_scratch *s)
+static void draw_lanes(const struct mcr_emitters *all, uint32_t kind, uint32_t by, int alone, const struct mcr_emitter_lanes *lanes,
+                       const double *k, int varying, struct mcr_emitter_scratch *s)
 {
     struct mcr_emitter_pack *second = &s->second;
     const double *restrict density = lanes->density;
@@ -227,39 +234,72 @@ static void draw_lanes(const struct mcr_emitters *all, uint32_t kind, uint32_t b
     }
 }
 
-/* Lists the lanes that chose emitter e (by_kind: an emitter of that kind). */
-static uint32_t list_chosen(const struct mcr_emitters *all, const struct mcr_emitter_scratch *s, uint32_t n, int64_t which, int by_kind,
-                            int32_t *restrict list)
+/*
+ * Lanes are grouped by their emitters where there are few, else by the kinds of their emitters. Of a group: its emitters' kind
+ * (MCR_EMITTER_KINDS where there is none), and its lanes, with their constants gathered if they differ.
+ */
+static int by_kind(const struct mcr_emitters *all)
+{
+    return all->count > MOST_BY_EMITTER;
+}
+
+static uint32_t group_count(const struct mcr_emitters *all)
+{
+    return by_kind(all) ? MCR_EMITTER_KINDS : all->count;
+}
+
+static uint32_t group_kind(const struct mcr_emitters *all, uint32_t group)
+{
+    if (!by_kind(all))
+        return all->emitter[group].kind;
+    return all->kinds >> group & 1 ? group : MCR_EMITTER_KINDS;
+}
+
+static uint32_t list_group(const struct mcr_emitters *all, const struct mcr_emitter_scratch *s, uint32_t n, uint32_t group,
+                           int32_t *restrict list)
 {
     const int64_t *restrict chosen = s->chosen;
+    const int kinds = by_kind(all);
     uint32_t count = 0;
     for (uint32_t i = 0; i < n; i++) {
         int64_t e = chosen[i];
         list[count] = (int32_t)i;
-        count += (by_kind ? e >= 0 && all->emitter[e].kind == which : e == which);
+        count += kinds ? e >= 0 && all->emitter[e].kind == group : e == (int64_t)group;
     }
     return count;
 }
 
+static const double *group_constants(const struct mcr_emitters *all, uint32_t group, uint32_t count, const int32_t *list,
+                                     struct mcr_emitter_scratch *s)
+{
+    if (!by_kind(all))
+        return all->k[group];
+    gather_constants(all, s->chosen, count, list, &s->pack);
+    return s->pack.k[0];
+}
+
 /* In point techniques the distance is wanted of lanes that were drawn by solid angle, too. */
-static void draw_group(const struct mcr_emitters *all, uint32_t by, int alone, uint32_t kind, int64_t which, int by_kind,
-                       const struct mcr_emitter_lanes *block, struct mcr_emitter_scratch *s)
+static void draw_group(const struct mcr_emitters *all, uint32_t by, int alone, uint32_t group, const struct mcr_emitter_lanes *block,
+                       struct mcr_emitter_scratch *s)
 {
     struct mcr_emitter_pack *pack = &s->pack;
-    uint32_t count = list_chosen(all, s, block->n, which, by_kind, pack->lane);
+    uint32_t kind = group_kind(all, group);
+    uint32_t count = kind < MCR_EMITTER_KINDS ? list_group(all, s, block->n, group, pack->lane) : 0;
     if (count == 0)
         return;
     uint32_t padded = pad_list(count, pack->lane);
     struct mcr_emitter_lanes lanes = pack_lanes(pack, padded);
     gather_points(block, padded, pack->lane, pack);
     gather_numbers(block, padded, pack->lane, pack);
-    if (by_kind)
-        gather_constants(all, s->chosen, padded, pack->lane, pack);
-    draw_lanes(all, kind, by, alone, &lanes, by_kind ? pack->k[0] : all->k[which], by_kind, s);
+    const double *k = group_constants(all, group, padded, pack->lane, s);
+    draw_lanes(all, kind, by, alone, &lanes, k, by_kind(all), s);
     scatter_drawn(count, pack->lane, pack, block);
 }
 
-/* Chooses emitters and draws toward them. `block` has its arrays; its densities are those of the chosen emitter alone, given that it was chosen. */
+/*
+ * Chooses emitters and draws toward them. `block` has its arrays; its densities are those of the chosen emitter alone, given that it was
+ * chosen.
+ */
 static void draw_block(const struct mcr_emitters *all, uint32_t by, int alone, const struct mcr_emitter_lanes *block, const double *number,
                        struct mcr_emitter_scratch *s)
 {
@@ -282,21 +322,18 @@ static void draw_block(const struct mcr_emitters *all, uint32_t by, int alone, c
     }
     for (uint32_t i = 0; i < n; i++)
         block->wx[i] = block->wy[i] = block->wz[i] = block->density[i] = block->distance[i] = 0;
-    if (all->count <= MOST_BY_EMITTER) {
-        for (uint32_t e = 0; e < all->count; e++)
-            draw_group(all, by, alone, all->emitter[e].kind, e, 0, block, s);
-    } else {
-        for (uint32_t kind = 0; kind < MCR_EMITTER_KINDS; kind++)
-            if (all->kinds >> kind & 1)
-                draw_group(all, by, alone, kind, kind, 1, block, s);
-    }
+    for (uint32_t group = 0; group < group_count(all); group++)
+        draw_group(all, by, alone, group, block, s);
 }
 
 /* ---- densities of directions --------------------------------------------------------------------------------------- */
 
-/* Adds to `sum` the densities of emitter e, times its probability, where the rays cross it. Lanes that chose it are left out (chosen may be NULL). */
-static void add_emitter(const struct mcr_emitters *all, uint32_t e, uint32_t by, const struct mcr_emitter_lanes *block, const int64_t *chosen,
-                        double *restrict sum, struct mcr_emitter_scratch *s)
+/*
+ * Adds to `sum` the densities of emitter e, times its probability, where the rays cross it. Lanes that chose it are left out (chosen may be
+ * NULL).
+ */
+static void add_emitter(const struct mcr_emitters *all, uint32_t e, uint32_t by, const struct mcr_emitter_lanes *block,
+                        const int64_t *chosen, double *restrict sum, struct mcr_emitter_scratch *s)
 {
     double *restrict flag = s->flag, probability = all->emitter[e].probability;
     CROSS(all, e, block, flag);
@@ -325,9 +362,11 @@ static void invert(uint32_t n, const double *restrict from, double *restrict to)
         to[i] = 1 / from[i];
 }
 
-/* Flags the listed lanes whose rays cross the node's box. What is not a number (a zero direction in the plane of a side) counts as crossed. */
-static void cross_box(const struct mcr_emitter_node *node, const struct mcr_emitter_lanes *block, uint32_t count, const int32_t *restrict list,
-                      const struct mcr_emitter_walk *walk, double *restrict flag)
+/*
+ * Flags the listed lanes whose rays cross the node's box. What is not a number (a zero direction in the plane of a side) counts as crossed.
+ */
+static void cross_box(const struct mcr_emitter_node *node, const struct mcr_emitter_lanes *block, uint32_t count,
+                      const int32_t *restrict list, const struct mcr_emitter_walk *walk, double *restrict flag)
 {
     const double *restrict px = block->px, *restrict py = block->py, *restrict pz = block->pz;
     const double *restrict ix = walk->ix, *restrict iy = walk->iy, *restrict iz = walk->iz;
@@ -345,11 +384,13 @@ static void cross_box(const struct mcr_emitter_node *node, const struct mcr_emit
 }
 
 /* Adds the emitters of a leaf in the listed lanes. */
-static void add_leaf(const struct mcr_emitters *all, const struct mcr_emitter_node *node, uint32_t by, const struct mcr_emitter_lanes *block,
+static void add_leaf(const struct mcr_emitters *all, const struct mcr_emitter_node *node, uint32_t by,
+                     const struct mcr_emitter_lanes *block,
                      const int64_t *chosen, double *restrict sum, uint32_t count, int32_t *list, struct mcr_emitter_scratch *s)
 {
     struct mcr_emitter_walk *w = &s->walk;
-    struct mcr_emitter_lanes lanes = {.n = pad_list(count, list), .px = w->px, .py = w->py, .pz = w->pz, .wx = w->wx, .wy = w->wy, .wz = w->wz};
+    struct mcr_emitter_lanes lanes = {.n = pad_list(count, list), .px = w->px, .py = w->py, .pz = w->pz, .wx = w->wx, .wy = w->wy,
+                                      .wz = w->wz};
     const double *from[] = {block->px, block->py, block->pz, block->wx, block->wy, block->wz};
     double *to[] = {w->px, w->py, w->pz, w->wx, w->wy, w->wz};
     for (uint32_t r = 0; r < 6; r++)
@@ -419,8 +460,8 @@ static void scale(uint32_t n, const double *restrict factor, double *restrict va
         value[i] *= factor[i];
 }
 
-static void density(const struct mcr_emitters *all, void *scratch, uint32_t by, const struct mcr_points *at, const struct mcr_directions *toward,
-                    double *out)
+static void density(const struct mcr_emitters *all, void *scratch, uint32_t by, const struct mcr_points *at,
+                    const struct mcr_directions *toward, double *out)
 {
     struct mcr_emitter_scratch *s = scratch;
     for (uint32_t base = 0; base < at->n; base += MCR_EMITTER_BLOCK) {
@@ -486,26 +527,28 @@ static void mass(const struct mcr_emitters *all, void *scratch, uint32_t by, con
 static void find_distances(const struct mcr_emitters *all, const struct mcr_emitter_lanes *block, struct mcr_emitter_scratch *s)
 {
     struct mcr_emitter_pack *pack = &s->pack;
-    for (uint32_t kind = 0; kind < MCR_EMITTER_KINDS; kind++) {
-        uint32_t count = 0;
-        if (!(all->kinds >> kind & 1))
-            continue;
-        for (uint32_t i = 0; i < block->n; i++) {
-            pack->lane[count] = (int32_t)i;
-            count += block->density[i] > 0 && block->distance[i] == 0 && all->emitter[s->chosen[i]].kind == kind;
+    for (uint32_t group = 0; group < group_count(all); group++) {
+        uint32_t kind = group_kind(all, group), listed = kind < MCR_EMITTER_KINDS ? list_group(all, s, block->n, group, pack->lane) : 0,
+            count = 0;
+        for (uint32_t j = 0; j < listed; j++) {
+            int32_t i = pack->lane[j];
+            pack->lane[count] = i;
+            count += block->density[i] > 0 && block->distance[i] == 0;
         }
-        struct mcr_emitter_lanes lanes = pack_lanes(pack, count);
-        gather_points(block, count, pack->lane, pack);
-        gather_directions(block, count, pack->lane, pack);
-        gather_constants(all, s->chosen, count, pack->lane, pack);
-        DISTANCE(kind, &lanes, pack->k[0], 1);
+        if (count == 0)
+            continue;
+        uint32_t padded = pad_list(count, pack->lane);
+        struct mcr_emitter_lanes lanes = pack_lanes(pack, padded);
+        gather_points(block, padded, pack->lane, pack);
+        gather_directions(block, padded, pack->lane, pack);
+        DISTANCE(kind, &lanes, group_constants(all, group, padded, pack->lane, s), by_kind(all));
         scatter(count, pack->lane, pack->distance, block->distance);
     }
 }
 
 /* Tells the points that were drawn, and their densities. */
-static void store_points(const struct mcr_emitters *all, const struct mcr_emitter_lanes *block, const struct mcr_emitter_points *out, uint32_t base,
-                         double *restrict out_density, struct mcr_emitter_scratch *s)
+static void store_points(const struct mcr_emitters *all, const struct mcr_emitter_lanes *block, const struct mcr_emitter_points *out,
+                         uint32_t base, double *restrict out_density, struct mcr_emitter_scratch *s)
 {
     const int scaled = shares(all);
     for (uint32_t i = 0; i < block->n; i++) {
@@ -545,31 +588,22 @@ static void draw_point(const struct mcr_emitters *all, void *scratch, uint32_t b
 }
 
 /* The density of each lane's emitter at its point, given that it was chosen; 0 where the emitter is not seen. */
-static void density_of_points(const struct mcr_emitters *all, uint32_t by, const struct mcr_emitter_lanes *block, struct mcr_emitter_scratch *s)
+static void density_of_points(const struct mcr_emitters *all, uint32_t by, const struct mcr_emitter_lanes *block,
+                              struct mcr_emitter_scratch *s)
 {
     struct mcr_emitter_pack *pack = &s->pack;
-    for (uint32_t kind = 0; kind < MCR_EMITTER_KINDS; kind++) {
-        uint32_t count = all->kinds >> kind & 1 ? list_chosen(all, s, block->n, kind, 1, pack->lane) : 0;
-        struct mcr_emitter_lanes lanes = pack_lanes(pack, count);
+    for (uint32_t group = 0; group < group_count(all); group++) {
+        uint32_t kind = group_kind(all, group);
+        uint32_t count = kind < MCR_EMITTER_KINDS ? list_group(all, s, block->n, group, pack->lane) : 0;
         if (count == 0)
             continue;
-        gather_points(block, count, pack->lane, pack);
-        gather_directions(block, count, pack->lane, pack);
-        gather(count, pack->lane, block->distance, pack->distance);
-        gather_constants(all, s->chosen, count, pack->lane, pack);
-        DENSITY(all, kind, by, 1, &lanes, pack->k[0], 1, &s->solid);
+        uint32_t padded = pad_list(count, pack->lane);
+        struct mcr_emitter_lanes lanes = pack_lanes(pack, padded);
+        gather_points(block, padded, pack->lane, pack);
+        gather_directions(block, padded, pack->lane, pack);
+        gather(padded, pack->lane, block->distance, pack->distance);
+        DENSITY(all, kind, by, 1, &lanes, group_constants(all, group, padded, pack->lane, s), by_kind(all), &s->solid);
         scatter(count, pack->lane, pack->density, block->density);
-    }
-}
-
-/* flag: 1 where the lane's emitter is seen. */
-static void see_chosen(const struct mcr_emitters *all, const struct mcr_emitter_lanes *block, struct mcr_emitter_scratch *s)
-{
-    for (uint32_t i = 0; i < block->n; i++) {
-        struct mcr_emitter_lanes one = {.n = 1, .px = block->px + i, .py = block->py + i, .pz = block->pz + i, .distance = s->flag + i};
-        s->flag[i] = 0;
-        if (s->chosen[i] >= 0)
-            SEEN(all, (uint32_t)s->chosen[i], &one);
     }
 }
 
@@ -594,9 +628,8 @@ static void density_point(const struct mcr_emitters *all, void *scratch, uint32_
             invert_total(block.n, s->total);
             scale(block.n, s->total, s->share);
         }
-        see_chosen(all, &block, s);
         for (uint32_t i = 0; i < block.n; i++)
-            out[base + i] = s->flag[i] != 0 ? s->share[i] * s->density[i] : 0;
+            out[base + i] = s->share[i] * s->density[i];
     }
 }
 

@@ -7,7 +7,10 @@
 
 #include "scene/vector.h"
 
-/* Boxes are a few thousand roundings larger than what is in them: whether a ray crosses at a very edge may be decided either way, but not by the box. */
+/*
+ * Boxes are a few thousand roundings larger than what is in them: whether a ray crosses at a very edge may be decided either way, but not
+ * by the box.
+ */
 #define SLACK (4096 * MCR_ROUNDING)
 
 struct item {

@@ -54,7 +54,10 @@ static double *add(struct mcr_emitters *all, uint32_t kind, uint32_t primitive, 
     return all->k[all->count++];
 }
 
-/* Parallelogram, triangle or disk: corner or centre c, edges or half axes e0, e1; `front` is on the front side. |N| times `share` is the area. */
+/*
+ * Parallelogram, triangle or disk: corner or centre c, edges or half axes e0, e1; `front` is on the front side. |N| times `share` is the
+ * area.
+ */
 static void add_flat(struct mcr_emitters *all, uint32_t kind, uint32_t primitive, uint32_t material, uint32_t sides, const double c[3],
                      const double e0[3], const double e1[3], const double front[3], double share)
 {
@@ -94,7 +97,10 @@ static void add_sphere(struct mcr_emitters *all, const struct mcr_shape *shape, 
     set_sides(k, sides, MARGIN * r * (mcr_length(shape->c) + r));
 }
 
-/* Mean of |E^-T s| over unit vectors s, times 4 pi |det E|: by a product rule of 64 x 64 points, whose error only bends the choice of emitter. */
+/*
+ * Mean of |E^-T s| over unit vectors s, times 4 pi |det E|: by a product rule of 64 x 64 points, whose error only bends the choice of
+ * emitter.
+ */
 static double ellipsoid_area(const double inverse[9], double determinant)
 {
     double sum = 0;
@@ -206,7 +212,8 @@ static void set_probabilities(struct mcr_emitters *all, const struct mcr_scene *
     for (uint32_t e = 0; e < all->count; e++) {
         struct mcr_emitter *emitter = &all->emitter[e];
         const double *radiance = scene->material[emitter->material].traits.radiance;
-        emitter->probability = mcr_luminance(radiance[0], radiance[1], radiance[2]) * emitter->area * (emitter->sides == BOTH_SIDES ? 2 : 1);
+        emitter->probability = mcr_luminance(radiance[0], radiance[1], radiance[2]) * emitter->area * (emitter->sides == BOTH_SIDES ?
+                                                                                                       2 : 1);
         largest = fmax(largest, emitter->probability);
     }
     for (uint32_t e = 0; e < all->count; e++)

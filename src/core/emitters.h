@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * Emitters: the bounded shapes of a scene whose materials emit, and drawing directions or points toward them. These are the host's light services
- * (mcrender/sampler.h) over a batch of points. An emitter is one primitive; a box is six of them. Infinite planes are left out.
+ * Emitters: the bounded shapes of a scene whose materials emit, and drawing directions or points toward them. These are the host's light
+ * services (mcrender/sampler.h) over a batch of points. An emitter is one primitive; a box is six of them. Infinite planes are left out.
  *
- * An emitter is chosen with a probability in proportion to its power: luminance of its mean radiance times area times emitting sides. With at most
- * MCR_EMITTERS_FEW emitters only those count that can be seen from the point at all: a point behind a one-sided plane, or inside a sphere that
- * emits outside, does not see it. With more, the choice is the same everywhere, and at such a point nothing is drawn.
+ * An emitter is chosen with a probability in proportion to its power: luminance of its mean radiance times area times emitting sides. With
+ * at most MCR_EMITTERS_FEW emitters only those count that can be seen from the point at all: a point behind a one-sided plane, or inside a
+ * sphere that emits outside, does not see it. With more, the choice is the same everywhere, and at such a point nothing is drawn.
  */
 #ifndef MCR_CORE_EMITTERS_H
 #define MCR_CORE_EMITTERS_H
@@ -27,8 +27,9 @@ enum mcr_emitter_kind {
 };
 
 /*
- * An emitter as the loops want it. Each kind has a height function of a point: flat ones N.(p - c), with N = e0 x e1 toward the front; spheres
- * |p - c|^2 - R^2; ellipsoids |E^-1 (p - c)|^2 - 1. The emitter is seen where height > K_ABOVE or height < K_BELOW (infinite if that side is dark).
+ * An emitter as the loops want it. Each kind has a height function of a point: flat ones N.(p - c), with N = e0 x e1 toward the front;
+ * spheres |p - c|^2 - R^2; ellipsoids |E^-1 (p - c)|^2 - 1. The emitter is seen where height > K_ABOVE or height < K_BELOW (infinite if
+ * that side is dark).
  * The thresholds are a few roundings of the coordinates off zero, so that a surface does not see itself.
  */
 enum mcr_emitter_constant {
@@ -85,7 +86,8 @@ size_t mcr_emitters_scratch(const struct mcr_emitters *emitters, uint32_t n);
 
 /*
  * The services, one set for each instruction set, all with the same bits. Contracts as in struct mcr_host: `by` is MCR_LIGHT_BY_*,
- * number[0] chooses the emitter, number[1] and [2] the point. `density` may be NULL in the draws. A lane's results depend on nothing but that lane.
+ * number[0] chooses the emitter, number[1] and [2] the point. `density` may be NULL in the draws. A lane's results depend on nothing but
+ * that lane.
  */
 struct mcr_emitter_functions {
     void (*draw)(const struct mcr_emitters *emitters, void *scratch, uint32_t by, const struct mcr_points *at, const double *const *number,

@@ -53,7 +53,6 @@ static struct mcr_job *open_job(struct mcr_batch *batch, struct mcr_pass *pass)
         return NULL;
     uint32_t cells = (uint32_t)(pass->cells - first < most ? pass->cells - first : most);
     *empty = (struct mcr_job){.first_cell = first, .cells = cells, .paths = cells * pass->cell_samples, .busy = 1};
-    empty->pending = empty->paths;
     size_t slot = (size_t)(empty - batch->job) * MCR_JOB_SLOTS;
     memset(batch->slot_r + slot, 0, empty->paths * sizeof(double));
     memset(batch->slot_g + slot, 0, empty->paths * sizeof(double));
@@ -76,11 +75,22 @@ static void reject(struct mcr_batch *batch, const struct mcr_pass *pass, uint64_
     }
 }
 
+/* Whether a path of the job in place i is among the rays still. */
+static int in_flight(const struct mcr_batch *batch, uint32_t i)
+{
+    const uint32_t *slot = batch->state.slot, *source = batch->source, rays = batch->rays;
+    uint32_t found = 0;
+    for (uint32_t j = 0; j < rays; j++)
+        found |= slot[source[j]] / MCR_JOB_SLOTS == i;
+    return found != 0;
+}
+
+/* Sums up the jobs whose paths have all begun and ended. */
 static void finish_jobs(struct mcr_batch *batch, struct mcr_pass *pass)
 {
     for (uint32_t i = 0; i < MCR_JOBS; i++) {
         struct mcr_job *job = &batch->job[i];
-        if (!job->busy || job->pending)
+        if (!job->busy || job->begun < job->paths || in_flight(batch, i))
             continue;
         for (uint32_t c = 0; c < job->cells; c++) {
             size_t slot = (size_t)i * MCR_JOB_SLOTS + (size_t)c * pass->cell_samples;
@@ -121,7 +131,6 @@ static void begin_paths(struct mcr_batch *batch, const struct mcr_pass *pass, st
     }
     MCR_LANES
     for (uint32_t i = 0; i < n; i++) {
-        batch->camera_replicate[i] = pass->replicate;
         paths->planned[to + i] = pass->planned;
         paths->slot[to + i] = place + job->begun + i;
         paths->bounce[to + i] = 0;
@@ -142,7 +151,7 @@ static int32_t camera(struct mcr_batch *batch, struct mcr_pass *pass)
         uint32_t room = core->capacity - batch->rays, to = batch->states, n = job->paths - job->begun < room ? job->paths - job->begun : room;
         int lens = core->scene->camera.kind == MCR_CAMERA_THIN_LENS && core->scene->camera.lens_radius > 0;
         begin_paths(batch, pass, job, to, n);
-        core->stages->path_keys(core->scene->render.seed, n, batch->camera_pixel, batch->camera_replicate, paths->index + to, paths->pixel_key + to,
+        core->stages->path_keys(pass->replicate_key, n, batch->camera_pixel, paths->index + to, paths->pixel_key + to,
                                 paths->path_key + to);
         int32_t status = mcr_numbers(batch, paths, to, to + n, 0, 2, batch->number);
         if (!status && lens)

@@ -13,7 +13,8 @@
 struct mcr_pass {
     struct mcr_core *core;
     uint64_t pixels;
-    uint32_t replicate, planned;      /* planned: samples of this replicate */
+    uint64_t replicate_key;
+    uint32_t planned;                 /* samples of this replicate */
     uint64_t first;                   /* the first sample's number within the replicate */
     uint32_t cell_samples;
     uint64_t cells;

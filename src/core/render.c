@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/cpu.h"
+#include "base/random.h"
 #include "base/threads.h"
 #include "core/groups.h"
 #include "core/host.h"
@@ -164,7 +165,7 @@ static int run_replicate(struct render *render, const struct mcr_cell_sink *sink
     const struct mcr_render_options *options = render->core.options;
     struct mcr_pass *pass = &render->pass;
     uint64_t at_once = PASS_CELLS / pass->pixels ? PASS_CELLS / pass->pixels : 1;
-    pass->replicate = replicate;
+    pass->replicate_key = mcr_replicate_key(render->core.scene->render.seed, replicate);
     pass->planned = planned;
     for (uint32_t done = 0; done < planned;) {
         if (options->stop && *options->stop) {

@@ -151,7 +151,6 @@ int mcr_token_is(const struct mcr_token *token, const char *word);
 const char *mcr_token_string(struct mcr_parser *parser, const struct mcr_token *token);
 struct mcr_mark mcr_mark(const struct mcr_parser *parser);
 void mcr_return_to(struct mcr_parser *parser, const struct mcr_mark *mark);
-size_t mcr_utf8_length(const char *at, const char *end);
 
 /* source.c: the text of a file, which becomes the diagnostics'. NULL after an error, reported at `place`. */
 const struct mcr_source *mcr_source_read(struct mcr_parser *parser, const char *path, struct mcr_file *file, struct mcr_place place);

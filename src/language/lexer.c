@@ -27,21 +27,6 @@ static int byte(const struct mcr_lexer *lexer, size_t ahead)
     return (size_t)(lexer->end - lexer->at) > ahead ? (unsigned char)lexer->at[ahead] : 0;
 }
 
-/* RFC 3629: no surrogates, no overlong forms. 0 if the bytes at `at` are not well-formed. */
-size_t mcr_utf8_length(const char *at, const char *end)
-{
-    const unsigned char *b = (const unsigned char *)at;
-    size_t length = b[0] < 0x80 ? 1 : b[0] >= 0xc2 && b[0] < 0xe0 ? 2 : (b[0] & 0xf0) == 0xe0 ? 3 : b[0] >= 0xf0 && b[0] < 0xf5 ? 4 : 0;
-    if (!length || length > (size_t)(end - at))
-        return 0;
-    for (size_t i = 1; i < length; i++)
-        if ((b[i] & 0xc0) != 0x80)
-            return 0;
-    if ((b[0] == 0xe0 && b[1] < 0xa0) || (b[0] == 0xed && b[1] > 0x9f) || (b[0] == 0xf0 && b[1] < 0x90) || (b[0] == 0xf4 && b[1] > 0x8f))
-        return 0;
-    return length;
-}
-
 void mcr_lexer_start(struct mcr_lexer *lexer, const struct mcr_source *source, size_t offset)
 {
     *lexer = (struct mcr_lexer){ .source = source, .line = 1, .fresh = 1, .line_start = source->text, .end = source->text + source->length };
@@ -279,8 +264,8 @@ static void lex_string(struct mcr_parser *parser, struct mcr_lexer *lexer, struc
             }
         } else if (!length || (c < 0x20 && c != '\t') || c == 0x7f) {
             token->bad = 1;
-            complain(parser, lexer, lexer->at, 1, c >= 0x80 ? "byte 0x%02X in a string, the text is not UTF-8" : "control character 0x%02X in a string",
-                     (unsigned)c);
+            complain(parser, lexer, lexer->at, 1,
+                     c >= 0x80 ? "byte 0x%02X in a string, the text is not UTF-8" : "control character 0x%02X in a string", (unsigned)c);
             for (length = 1; (size_t)(lexer->end - lexer->at) > length && (unsigned char)lexer->at[length] >= 0x80 &&
                              !mcr_utf8_length(lexer->at + length, lexer->end);)
                 length++;

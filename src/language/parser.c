@@ -49,8 +49,9 @@ static void add_item(struct mcr_parser *parser, struct mcr_block *block, const s
 static struct mcr_item *last_setting(struct mcr_parser *parser, struct mcr_block *block)
 {
     struct mcr_vector *items = &parser->items[block->level];
-    return block->after == MCR_AFTER_SETTING && block->inside != MCR_INSIDE_UNKNOWN && items->count ? (struct mcr_item *)items->data + items->count - 1
-                                                                                                 : NULL;
+    if (block->after != MCR_AFTER_SETTING || block->inside == MCR_INSIDE_UNKNOWN || !items->count)
+        return NULL;
+    return (struct mcr_item *)items->data + items->count - 1;
 }
 
 static struct mcr_place here(const struct mcr_parser *parser)
@@ -505,7 +506,8 @@ static void read_stray(struct mcr_parser *parser, struct mcr_block *block)
         begins_value = parser->token.kind != TOKEN_WORD && mcr_begins_value(&parser->token);
     }
     if (begins_value && before)
-        mcr_report(parser->diagnostics, MCR_NOTE, before->place, "a setting takes one value, several go into a tuple: %s ( a, b, ... )", before->word);
+        mcr_report(parser->diagnostics, MCR_NOTE, before->place, "a setting takes one value, several go into a tuple: %s ( a, b, ... )",
+                   before->word);
     if (before && (begins_value || strchr("*/^=", kind)))
         before->value = mcr_error_value(before->value.place);
     if (kind == '{') {

@@ -139,7 +139,8 @@ static int begins_item(struct mcr_parser *parser, unsigned inside)
     if (mcr_token_is(&parser->token, "let") || mcr_token_is(&parser->token, "include"))
         return 1;
     if (!(inside & (MCR_INSIDE_SCENE | MCR_INSIDE_GROUP)))
-        return parser->token.first || !(mcr_let_exists(parser, &parser->token) || mcr_is_function(&parser->token) || mcr_token_is(&parser->token, "pi"));
+        return parser->token.first ||
+               !(mcr_let_exists(parser, &parser->token) || mcr_is_function(&parser->token) || mcr_token_is(&parser->token, "pi"));
     if (form_of(&parser->token))
         return 1;
     if (!parser->token.first)

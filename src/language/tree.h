@@ -45,7 +45,7 @@ struct mcr_argument {
 /* One thing in a block, in the order of the text: a setting `word value` or a block `word [name] [kind] { … }`. */
 struct mcr_item {
     uint8_t is_block;
-    uint8_t damaged;             /* block: something in it was left out after a mistake that was reported; what seems to be missing is no second mistake */
+    uint8_t damaged;             /* block: something in it was left out after a mistake that was reported; what is missing is no second one */
     uint32_t count;              /* block: of item */
     const char *word;
     struct mcr_place place;      /* of the word */

@@ -249,7 +249,8 @@ static struct mcr_value call(struct mcr_parser *parser, const struct mcr_token *
     while (more) {
         struct mcr_argument next;
         if (++parser->arguments > MCR_ARGUMENT_LIMIT) {
-            mcr_report(parser->diagnostics, MCR_ERROR, mcr_token_place(parser, &parser->token), "more than %u arguments of calls", MCR_ARGUMENT_LIMIT);
+            mcr_report(parser->diagnostics, MCR_ERROR, mcr_token_place(parser, &parser->token), "more than %u arguments of calls",
+                       MCR_ARGUMENT_LIMIT);
             parser->arguments = 0;
             mcr_panic(parser);
             break;

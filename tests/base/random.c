@@ -15,7 +15,7 @@ static double number_of(uint64_t path_key, uint64_t dimension)
 
 static double number(uint64_t seed, uint64_t pixel, uint64_t replicate, uint64_t sample, uint64_t dimension)
 {
-    return number_of(mcr_path_key(mcr_pixel_key(seed, pixel, replicate), sample), dimension);
+    return number_of(mcr_path_key(mcr_pixel_key(mcr_replicate_key(seed, replicate), pixel), sample), dimension);
 }
 
 static void test_conversion(void)
@@ -105,7 +105,7 @@ static void test_together(void)
     double sum = 0.0, squares = 0.0;
 
     for (uint64_t n = 0; n < COUNT; n++) {
-        uint64_t key = mcr_path_key(mcr_pixel_key(1, n >> 6, 0), n & 63);
+        uint64_t key = mcr_path_key(mcr_pixel_key(mcr_replicate_key(1, 0), n >> 6), n & 63);
         uint32_t cell = 0;
         for (uint64_t d = 0; d < 4; d++) {
             double u = mcr_unit_double(mcr_dimension_bits(key, d));
@@ -129,9 +129,9 @@ static void test_avalanche(void)
             uint32_t flipped = 0;
             for (uint64_t n = 0; n < 2048; n++) {
                 uint64_t c[5] = {n, 3 * n, n & 15, n >> 3, n & 63}, a, b;
-                a = mcr_dimension_bits(mcr_path_key(mcr_pixel_key(c[0], c[1], c[2]), c[3]), c[4]);
+                a = mcr_dimension_bits(mcr_path_key(mcr_pixel_key(mcr_replicate_key(c[0], c[2]), c[1]), c[3]), c[4]);
                 c[coordinate] ^= UINT64_C(1) << bit;
-                b = mcr_dimension_bits(mcr_path_key(mcr_pixel_key(c[0], c[1], c[2]), c[3]), c[4]);
+                b = mcr_dimension_bits(mcr_path_key(mcr_pixel_key(mcr_replicate_key(c[0], c[2]), c[1]), c[3]), c[4]);
                 flipped += (uint32_t)__builtin_popcountll(a ^ b);
             }
             double z = (flipped - 65536.0) / sqrt(131072.0 / 4.0);

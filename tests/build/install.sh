@@ -15,6 +15,7 @@ holds bin/mcrender
 for word in $MCR_PLUGINS; do holds "mcrender-1/plugins/$word\\.so"; done
 for header in plugin sampler material; do holds "include/mcrender/$header\\.h"; done
 holds 'pkgconfig/mcrender-plugin\.pc'
+holds 'bash-completion/completions/mcrender\.bash'
 for page in $MCR_MAN; do holds "man/man${page##*.}/$(basename "$page")"; done
 for scene in $MCR_SCENES; do holds "mcrender/scenes/$(basename "$scene")"; done
 grep -q 'moduleexec_LTLIBRARIES = .*oiio' "$builddir/Makefile" && ! grep -q '^#am.*oiio.la' "$builddir/Makefile" && [ -f "$MCRENDER_MODULE_PATH/oiio.so" ] &&

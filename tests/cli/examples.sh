@@ -7,6 +7,7 @@
 #     test: file NAME      saved as NAME for the examples behind it on the same page
 #     test: error NAME     the exact output of `mcrender check NAME`
 #     test: shell [oiio]   run by sh -eu; status 0. oiio: only where OpenImageIO is there
+#     test: none           not an example
 #     test: report         the first words of the lines are those of the report of a render with --profile
 # and before a list, words: TEXT, a scene's text that makes the program list the words it expects: those that the list has.
 . "$srcdir/tests/tap.sh"
@@ -21,19 +22,17 @@ printf '#!/bin/sh\n[ "$1 $2" = "--cflags mcrender-plugin" ] && echo "-I%s/src %s
 chmod +x "$TMPDIR/bin"/* || exit 99
 PATH=$TMPDIR/bin:$PATH
 
-# Displays with a `test:` comment right before them become PAGE/NUMBER.text, and PAGE/list gets "NUMBER LINE KIND NAME". A display
-# of scene text or commands without such a comment is not run: there are only those that pages/untested names.
+# The displays of PAGE go to FOLDER/NUMBER.text, FOLDER/list gets "NUMBER LINE KIND NAME", and FOLDER/mistakes what is not marked.
 extract() # page folder
 {
     awk -v to="$2" '
         /^\.\\" test: / { kind = $3; name = $4; next }
-        kind != "" && /^\.Bd -literal/ { count++; file = to "/" count ".text"; printf "" >file
-                                         print count, NR, kind, name >(to "/list"); inside = 1; kind = ""; next }
+        /^\.Bd -literal/ { if (kind == "") print "line " NR ": a display without a test: comment" >(to "/mistakes")
+                           file = to "/" ++count ".text"; printf "" >file
+                           print count, NR, kind == "" ? "none" : kind, name >(to "/list"); kind = name = ""; inside = 1; next }
         kind != "" { print "line " NR ": a test: comment that no display follows" >(to "/mistakes"); kind = "" }
-        inside && /^\.Ed/ { inside = 0; close(file); next }
-        inside { gsub(/\\e/, "\\"); gsub(/\\&/, ""); gsub(/\\-/, "-"); gsub(/\\\(dq/, "\""); gsub(/\\\(aq/, "\047"); print >file; next }
-        /^\.Bd -literal/ { untested++ }
-        END { print untested + 0 >(to "/untested") }' "$1"
+        /^\.Ed/ { inside = 0; close(file); next }
+        inside { gsub(/\\e/, "\\"); gsub(/\\&/, ""); gsub(/\\-/, "-"); gsub(/\\\(dq/, "\""); gsub(/\\\(aq/, "\047"); print >file }' "$1"
 }
 
 render() # scene…: no message at all, status 0
@@ -94,12 +93,13 @@ run_page() # page
     local page=${1##*/} folder=$TMPDIR/${1##*/} number line kind name
     mkdir -p "$folder" && cd "$folder" || exit 99
     extract "$1" .
-    empty "$page: every test: comment stands before a display" "$(cat mistakes 2>/dev/null)"
+    empty "$page: every display says how it is tested" "$(cat mistakes 2>/dev/null)"
     check "$page: there are examples" test -s list
     example_scene cornell-box.scn || { point 1 "$page: the scene of the examples"; return; }
     while read -r number line kind name; do
         case $kind in
-        check) checked_name=$number.scn; cp "$number.text" "$checked_name"; check "$page:$line: a scene" checked "$checked_name" ;;
+        none) ;;
+        check) cp "$number.text" "$number.scn"; check "$page:$line: a scene" checked "$number.scn" ;;
         fragment) complete "$number.text" "$number.scn"; check "$page:$line: a part of a scene" checked "$number.scn" ;;
         file) cp "$number.text" "$name"; check "$page:$line: $name" test -s "$name" ;;
         error) check "$page:$line: the messages of $name" failed_as "$name" "$number.text" ;;
@@ -120,7 +120,7 @@ expected_words() # text
     mcrender check words.scn 2>&1 | sed -n "s/.*unknown [a-z]* 'zzz' .*, expected \(.*\)/\1/p" | sed 's/ or /, /; s/, /\n/g' | sort -u
 }
 
-# "FILE-SAFE-NUMBER TEXT" for every words: comment; the words of its list in NUMBER.words.
+# words.list gets "NUMBER TEXT" for every words: comment, and NUMBER.words the words of the list behind it.
 extract_words() # page
 {
     awk '
@@ -157,13 +157,19 @@ keys_told()
     # the last four are there only if a sample was not finite
     { sed -n 's/^ *"\([a-z_]*\)": .*/\1/p' keys.json; printf '%s\n' not_finite_first x y sample; } | sort -u
 }
-keys_listed() { sed -n '/^\.\\" keys: begin/,/^\.\\" keys: end/p' "$1" | grep '^\.It Li\|^\.It Ql' | sed 's/^\.It [A-Z][a-z] //' | tr ' ' '\n' | grep '^[a-z_]*$' | sort -u; }
+keys_listed() { sed -n '/^\.\\" keys: begin/,/^\.\\" keys: end/p' "$1" | sed -n 's/^\.It Cm //p' | tr ' ' '\n' | grep '^[a-z_]*$' | sort -u; }
 
 for page in mcrender.1 mcrender-scene.5 mcrender-plugin.7; do
     [ -f "$srcdir/man/$page" ] || { point 1 "$page exists"; continue; }
     run_page "$srcdir/man/$page"
     run_words "$srcdir/man/$page"
 done
+
+# The scene in README.md: the block that begins with the format's version.
+mkdir -p "$TMPDIR/README.md" && cd "$TMPDIR/README.md" || exit 99
+awk '/^```/ { inside = 0 } /^```$/ { getline; if (/^mcrender 1/) inside = 1 } inside' "$srcdir/README.md" >scene.scn
+check "README.md: the scene" checked scene.scn
+check "README.md: the scene was found" grep -q sphere scene.scn
 
 # The furnace of the plugin's example: radiance 1 and albedo 1/2 everywhere make 2.
 cd "$TMPDIR/mcrender-plugin.7" || exit 99

@@ -118,7 +118,8 @@ static double deviate(const struct drawn_facts *facts, const struct mean cell[CE
 {
     double chi = 0, degrees = 0;
     for (uint32_t k = 0; k < CELLS; k++) {
-        double expected = mean_value(&cell[k]), error = mean_error(&cell[k]), variance = expected * (1 - fmin(expected, 1)) / facts->total + error * error;
+        double expected = mean_value(&cell[k]), error = mean_error(&cell[k]);
+        double variance = expected * (1 - fmin(expected, 1)) / facts->total + error * error;
         if (expected * facts->total < 20)
             continue;
         double difference = facts->count[k] / facts->total - expected;
@@ -132,10 +133,11 @@ static double deviate(const struct drawn_facts *facts, const struct mean cell[CE
 }
 
 /*
- * tolerance: of the relative difference between the density a draw tells and density() of its direction. It grows where the density depends steeply
- * on the direction: a rounding of it over the cosine at flat emitters, over its square at the limb of round ones.
+ * tolerance: of the relative difference between the density a draw tells and density() of its direction. It grows where the density depends
+ * steeply on the direction: a rounding of it over the cosine at flat emitters, over its square at the limb of round ones.
  */
-static void check(struct stage *s, const char *name, const double p[3], const double centre[3], double radius, double mass_known, double tolerance)
+static void check(struct stage *s, const char *name, const double p[3], const double centre[3], double radius, double mass_known,
+                  double tolerance)
 {
     const struct mcr_emitter_functions *f = best_functions();
     struct cone c = cone_toward(p, centre, radius);
@@ -154,12 +156,14 @@ static void check(struct stage *s, const char *name, const double p[3], const do
         error = mean_error(&whole);
         z = (mean_value(&whole) - mass) / (error > 0 ? error : 1e-300);
         ok(mass_known < 0 || fabs(mass - mass_known) <= 1e-12, "%s, by %s: mass %.12g", name, how, mass);
-        ok(fabs(z) <= 4 || fabs(mean_value(&whole) - mass) <= 1e-10, "%s, by %s: density integrates to it, z = %.2f (error %.1e)", name, how, z, error);
+        ok(fabs(z) <= 4 || fabs(mean_value(&whole) - mass) <= 1e-10, "%s, by %s: density integrates to it, z = %.2f (error %.1e)", name,
+           how, z, error);
         z = (facts.none / facts.total - (1 - mass)) / sqrt(fmax(mass * (1 - mass), 1e-300) / facts.total);
         ok(fabs(z) <= 4 || facts.none == 0, "%s, by %s: draws as often, %.0f of %.0f empty", name, how, facts.none, facts.total);
         z = deviate(&facts, cell);
         ok(fabs(z) <= 4, "%s, by %s: drawn by the density, z = %.2f", name, how, z);
-        ok(facts.worst <= tolerance && facts.lost <= facts.total * 1e-4, "%s, by %s: draw tells the density (worst %.1e, %.0f lost)", name, how,
+        ok(facts.worst <= tolerance && facts.lost <= facts.total * 1e-4, "%s, by %s: draw tells the density (worst %.1e, %.0f lost)", name,
+           how,
            facts.worst, facts.lost);
         ok(facts.bent <= 1e-14, "%s, by %s: unit directions, %.1e", name, how, facts.bent);
     }
@@ -179,7 +183,8 @@ static void flat_near(uint32_t kind, const char *name)
         stage_flat(&s, kind, sides, 1, c, e0, e1);
         stage_ready(&s);
         for (size_t i = 0; i < sizeof points / sizeof *points; i++) {
-            double height = s.shape[0].n[0] * (points[i][0] - c[0]) + s.shape[0].n[1] * (points[i][1] - c[1]) + s.shape[0].n[2] * (points[i][2] - c[2]);
+            double height = s.shape[0].n[0] * (points[i][0] - c[0]) + s.shape[0].n[1] * (points[i][1] - c[1]) +
+                            s.shape[0].n[2] * (points[i][2] - c[2]);
             double known = (height > 0 ? sides & FRONT : sides & BACK) ? 1 : 0;
             snprintf(text, sizeof text, "%s, sides %u, point %zu", name, sides / FRONT, i);
             check(&s, text, points[i], centre, 0.85, known, 1e-9);
@@ -227,7 +232,8 @@ static void flat_grazing(uint32_t kind, const char *name)
             batch_density(&b, &s, best_functions(), MCR_LIGHT_BY_SOLID_ANGLE, again);
             for (uint32_t k = 0; k < LANES; k++)
                 worst = again[k] > 0 && b.density[k] > 0 ? fmax(worst, fabs(again[k] / b.density[k] - 1)) : worst;
-            ok(worst < 1e-6, "%s: draw tells the density (worst %.1e)", text, worst); /* 1e-16 over the cosine 1e-7, cubed: 3e-9 a rounding */
+            /* 1e-16 over the cosine 1e-7, cubed: 3e-9 a rounding */
+            ok(worst < 1e-6, "%s: draw tells the density (worst %.1e)", text, worst);
             batch_end(&b);
             free(again);
         } else {
@@ -268,7 +274,8 @@ static void round_ones(void)
 static void many(void)
 {
     const double c[3] = {-0.2, -0.2, 0.5}, e0[3] = {0.5, 0, 0}, e1[3] = {0, 0.5, 0}, behind[3] = {-0.1, -0.1, 0.7}, ball[3] = {0, 0, 0.3};
-    const double axes[3][3] = {{0.1, 0, 0}, {0, 0.2, 0}, {0, 0.05, 0.1}}, p[3] = {0.05, 0.02, 0}, q[3] = {0.1, 0.05, 0.95}, all[3] = {0, 0, 0.5};
+    const double axes[3][3] = {{0.1, 0, 0}, {0, 0.2, 0}, {0, 0.05, 0.1}}, p[3] = {0.05, 0.02, 0}, q[3] = {0.1, 0.05, 0.95},
+        all[3] = {0, 0, 0.5};
     struct stage s;
     stage_begin(&s);
     stage_flat(&s, MCR_SHAPE_PARALLELOGRAM, FRONT, 3, c, e0, e1); /* faces up */
@@ -305,7 +312,8 @@ static void many(void)
 
 static void triangles(void)
 {
-    const double a[3] = {-0.3, -0.2, 0.5}, b[3] = {0.3, -0.1, 0.6}, c[3] = {0, 0.4, 0.45}, p[3] = {0.1, 0, 0}, q[3] = {0.4, 0.4, 0.49}, mid[3] = {0, 0, 0.5};
+    const double a[3] = {-0.3, -0.2, 0.5}, b[3] = {0.3, -0.1, 0.6}, c[3] = {0, 0.4, 0.45}, p[3] = {0.1, 0, 0}, q[3] = {0.4, 0.4, 0.49},
+        mid[3] = {0, 0, 0.5};
     struct stage s;
     stage_begin(&s);
     stage_triangle(&s, BACK, 1, a, b, c);

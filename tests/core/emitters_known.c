@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * Known answers by light sampling alone: form factors S2 to S6 and S20 of the analytic scenes, by area and by solid angle, as directions and as
- * points; and the variance of one sample in S16 and S17. L = 1, the receiver looks along +z.
+ * Known answers by light sampling alone: form factors S2 to S6 and S20 of the analytic scenes, by area and by solid angle, as directions
+ * and as points; and the variance of one sample in S16 and S17. L = 1, the receiver looks along +z.
  */
 #include "emitters_scene.h"
 
@@ -9,7 +9,8 @@
 #define PI MCR_PI
 
 /* A receiver under a scene: cosine times visible radiance over pi and density, that is the form factor, sample by sample. */
-static void estimate(const struct stage *s, uint32_t by, int points, const double p[3], const double normal[3], uint32_t rounds, struct mean *mean)
+static void estimate(const struct stage *s, uint32_t by, int points, const double p[3], const double normal[3], uint32_t rounds,
+                     struct mean *mean)
 {
     const struct mcr_emitter_functions *f = best_functions();
     struct batch b;
@@ -171,7 +172,8 @@ static void variance(const struct stage *s, uint32_t by, double radius, double a
     }
     ok(fabs(mean_variance(&one) / alone - 1) < 0.05, "R = %g by %s: variance %.6g, known %.6g", radius, by ? "solid angle" : "area",
        mean_variance(&one), alone);
-    ok(fabs(mean_variance(&two) / mixed - 1) < 0.05, "R = %g by %s with cosine: variance %.6g, known %.6g", radius, by ? "solid angle" : "area",
+    ok(fabs(mean_variance(&two) / mixed - 1) < 0.05, "R = %g by %s with cosine: variance %.6g, known %.6g", radius,
+       by ? "solid angle" : "area",
        mean_variance(&two), mixed);
     batch_end(&b);
 }

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * The light services give the same bits for every instruction set and however lanes are grouped into batches; draws of points agree with their
- * densities; nothing is written beyond the lanes; extreme points give no NaN.
+ * The light services give the same bits for every instruction set and however lanes are grouped into batches; draws of points agree with
+ * their densities; nothing is written beyond the lanes; extreme points give no NaN.
  */
 #include "emitters_scene.h"
 
@@ -29,8 +29,8 @@ static void make_stage(struct stage *s, uint32_t many)
 }
 
 /* Everything that the services tell about lanes first .. first+n-1, into out[k][first + i]. */
-static void run(const struct stage *s, const struct mcr_emitter_functions *f, uint32_t by, const struct batch *b, uint32_t first, uint32_t n,
-                double *out[RESULTS])
+static void run(const struct stage *s, const struct mcr_emitter_functions *f, uint32_t by, const struct batch *b, uint32_t first,
+                uint32_t n, double *out[RESULTS])
 {
     struct batch part;
     double *q[8];
@@ -172,13 +172,59 @@ static void test_points(uint32_t many)
                 off = at[0] * k[MCR_K_N] + at[1] * k[MCR_K_N + 1] + at[2] * k[MCR_K_N + 2];
             wrong += !(fabs(off) < 1e-10);
         }
-        ok(wrong == 0 && drawn > LANES / 4, "%u emitters, by %u: points lie on the emitters they name (%u of %u wrong)", s.emitters->count, by, wrong, drawn);
-        ok(worst < 1e-6 && apart < 1e-14, "%u emitters, by %u: drawn points have the density that density_point tells (%.1e)", s.emitters->count, by, worst);
+        ok(wrong == 0 && drawn > LANES / 4, "%u emitters, by %u: points lie on the emitters they name (%u of %u wrong)", s.emitters->count,
+           by, wrong, drawn);
+        ok(worst < 1e-6 && apart < 1e-14, "%u emitters, by %u: drawn points have the density that density_point tells (%.1e)",
+           s.emitters->count, by, worst);
     }
     for (uint32_t k = 0; k < 8; k++)
         free(q[k]);
     free(again);
     free(emitter);
+    batch_end(&b);
+    stage_end(&s);
+}
+
+/* The tree of many emitters leads rays to those that they cross: the densities are those of asking all, and draws tell them. */
+static void test_tree(uint32_t many)
+{
+    const struct mcr_emitter_functions *f = best_functions();
+    struct stage s;
+    struct batch b;
+    double *all = doubles(LANES), worst = 0, worst_drawn = 0;
+    uint32_t crossed = 0, wrong = 0;
+    make_stage(&s, many);
+    batch_begin(&b, LANES);
+    for (uint32_t round = 0; round < 20; round++) {
+        struct mcr_emitter_node *node = s.emitters->node;
+        make_points(&b);
+        for (uint32_t i = 0; i < LANES; i++) {
+            b.pz[i] += 0.01 * round;
+            b.x[i] = i % 50 ? b.x[i] : 0, b.y[i] = i % 100 ? b.y[i] : 0; /* along axes, and not unit: as well */
+        }
+        for (int drawn = 0; drawn <= 1; drawn++) {
+            double *told = doubles(LANES);
+            if (drawn)
+                batch_draw(&b, &s, f, MCR_LIGHT_BY_SOLID_ANGLE);
+            memcpy(told, b.density, LANES * sizeof *told);
+            batch_density(&b, &s, f, MCR_LIGHT_BY_SOLID_ANGLE, b.density);
+            s.emitters->node = NULL;
+            batch_density(&b, &s, f, MCR_LIGHT_BY_SOLID_ANGLE, all);
+            s.emitters->node = node;
+            for (uint32_t i = 0; i < LANES; i++) {
+                crossed += all[i] > 0;
+                wrong += (all[i] > 0) != (b.density[i] > 0);
+                worst = fmax(worst, all[i] > 0 ? fabs(b.density[i] / all[i] - 1) : 0);
+                worst_drawn = fmax(worst_drawn, drawn && told[i] > 0 && all[i] > 0 ? fabs(told[i] / all[i] - 1) : 0);
+            }
+            free(told);
+        }
+    }
+    ok(s.emitters->node && wrong == 0 && crossed > LANES && worst < 1e-13,
+       "%u emitters: the tree misses none (%u of %u lanes cross, %u wrong, %.1e)",
+       s.emitters->count, crossed, 40 * LANES, wrong, worst);
+    ok(worst_drawn < 1e-6, "%u emitters: draws tell the density (%.1e)", s.emitters->count, worst_drawn); /* at the limbs of ellipsoids */
+    free(all);
     batch_end(&b);
     stage_end(&s);
 }
@@ -235,10 +281,12 @@ static void test_table(void)
     const struct mcr_emitters *e = s.emitters;
     double disk = 2 * MCR_PI * 0.02, sphere = 4 * MCR_PI * 0.01;
     ok(e->count == 8, "planes, dark sides and radiance 0 are no emitters: %u", e->count);
-    ok(e->of_primitive[0] == -1 && e->of_primitive[1] == -1 && e->of_primitive[2] == -1 && e->of_primitive[3] == 0 && e->of_primitive[4] == 1 &&
+    ok(e->of_primitive[0] == -1 && e->of_primitive[1] == -1 && e->of_primitive[2] == -1 && e->of_primitive[3] == 0 &&
+       e->of_primitive[4] == 1 &&
            e->of_primitive[9] == 6 && e->of_primitive[10] == 7,
        "primitives lead to their emitters");
-    ok(fabs(e->emitter[0].probability - disk / (disk + sphere)) < 1e-15 && e->emitter[3].probability >= 0 && e->emitter[3].probability < 1e-50,
+    ok(fabs(e->emitter[0].probability - disk / (disk + sphere)) < 1e-15 && e->emitter[3].probability >= 0 &&
+       e->emitter[3].probability < 1e-50,
        "probability in proportion to luminance, area and sides: %.17g", e->emitter[0].probability);
     stage_end(&s);
 
@@ -265,6 +313,8 @@ int main(void)
     test_points(3);
     test_points(9);
     test_points(40);
+    test_tree(20);
+    test_tree(60);
     test_extremes();
     test_table();
     return tap_done();

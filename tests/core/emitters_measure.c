@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * How exactly solid angles are measured, against the same formulas in long double (64 bits or more): lights of 1e-4 to 1e-12 sr, grazing, with needle
- * corners, points close to edges and corners; spheres of angular radius 1 to 1e-9; disks, and how they are swept. Bounds from "Extremes" of the analytic scenes.
+ * How exactly solid angles are measured, against the same formulas in long double (64 bits or more): lights of 1e-4 to 1e-12 sr, grazing,
+ * with needle corners, points close to edges and corners; spheres of angular radius 1 to 1e-9; disks, and how they are swept. Bounds from
+ * "Extremes" of the analytic scenes.
  */
 #include "emitters_scene.h"
 
@@ -87,7 +88,8 @@ static struct fan measured(struct stage *s, uint32_t kind, const struct sight *s
     }
     stage_ready(s);
     struct flat flat = flat_load(s->emitters->k[0], 1);
-    struct fan fan = kind == MCR_EMITTER_TRIANGLE ? fan_measure(MCR_EMITTER_TRIANGLE, &flat, 0, 0, 0) : fan_measure(MCR_EMITTER_PARALLELOGRAM, &flat, 0, 0, 0);
+    struct fan fan = kind == MCR_EMITTER_TRIANGLE ? fan_measure(MCR_EMITTER_TRIANGLE, &flat, 0, 0, 0)
+                                                  : fan_measure(MCR_EMITTER_PARALLELOGRAM, &flat, 0, 0, 0);
     stage_end(s);
     return fan;
 }
@@ -145,7 +147,9 @@ static void test_small(uint32_t kind, const char *name)
     }
 }
 
-/* Points at all heights over the plane of a light of size 1, over it, beside it, close to its edges and corners: what is called steady is. */
+/*
+ * Points at all heights over the plane of a light of size 1, over it, beside it, close to its edges and corners: what is called steady is.
+ */
 static void test_close(uint32_t kind, const char *name)
 {
     static struct stage stage;
@@ -193,7 +197,8 @@ static void test_sphere(void)
             double way[3], distance = 1 + number(key, 20);
             unit(key, 0, way);
             double c[3] = {way[0] * distance, way[1] * distance, way[2] * distance}, r = radius * (1 + 0.1 * number(key, 21));
-            long double square = (long double)c[0] * c[0] + (long double)c[1] * c[1] + (long double)c[2] * c[2], sine = (long double)r * r / square;
+            long double square = (long double)c[0] * c[0] + (long double)c[1] * c[1] + (long double)c[2] * c[2];
+            long double sine = (long double)r * r / square;
             long double open = sine / (1 + sqrtl(1 - sine)), known = 1 / (2 * 3.14159265358979323846264338327950288L * open);
             double k[MCR_K_SIZE] = {c[0], c[1], c[2]};
             k[MCR_K_RADIUS] = r, k[MCR_K_SQUARE] = r * r, k[MCR_K_INVERSE] = 1 / (2 * MCR_PI * r * r);
@@ -244,8 +249,8 @@ static long double swept(long double aa, long double bb, long double turn)
 }
 
 /*
- * Disks far and near, round and thin: the solid angle against a quadrature; and for drawn directions, the part of the solid angle that the sweep has passed
- * at theirs against the number they were drawn with, and 1 - cos within the sector.
+ * Disks far and near, round and thin: the solid angle against a quadrature; and for drawn directions, the part of the solid angle that the
+ * sweep has passed at theirs against the number they were drawn with, and 1 - cos within the sector.
  */
 static void test_disk(void)
 {
@@ -281,7 +286,8 @@ static void test_disk(void)
             worst_far = fmax(worst_far, size < 0.3 ? error : 0);
             for (uint32_t i = 0; i < b.n && key % 4 == 0; i++) {
                 double x = (b.x[i] * cone.ax + b.y[i] * cone.ay + b.z[i] * cone.az) / cone.aa;
-                double y = (b.x[i] * cone.bx + b.y[i] * cone.by + b.z[i] * cone.bz) / cone.bb, z = b.x[i] * cone.zx + b.y[i] * cone.zy + b.z[i] * cone.zz;
+                double y = (b.x[i] * cone.bx + b.y[i] * cone.by + b.z[i] * cone.bz) / cone.bb,
+                       z = b.x[i] * cone.zx + b.y[i] * cone.zy + b.z[i] * cone.zz;
                 double turn = atan2(y, x), radius = cone.aa * x * x + cone.bb * y * y, sink = radius / (1 + z);
                 turn = turn < 0 ? turn + 2 * MCR_PI : turn;
                 double edge = cone.aa * cos(turn) * cos(turn) + cone.bb * sin(turn) * sin(turn), open = edge / (1 + edge + sqrt(1 + edge));
@@ -297,7 +303,8 @@ static void test_disk(void)
     /* the series ends at 5e-11; a direction's rounding over the size of the light, 1e-16 / 1e-4, and over its thinness is less */
     ok(worst_turn <= 1e-10, "disks: swept by solid angle, to %.1e of it", worst_turn);
     ok(worst_out <= 1e-10, "disks: uniform along the sector, to %.1e", worst_out);
-    ok(kinds[0] > 20 && kinds[1] > 10 && kinds[2] > 10 && kinds[3] > 10, "disks of 8, 16, 32 nodes and by area: %u, %u, %u, %u", kinds[0], kinds[1], kinds[2],
+    ok(kinds[0] > 20 && kinds[1] > 10 && kinds[2] > 10 && kinds[3] > 10, "disks of 8, 16, 32 nodes and by area: %u, %u, %u, %u", kinds[0],
+       kinds[1], kinds[2],
        kinds[3]);
 }
 

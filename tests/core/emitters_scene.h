@@ -121,7 +121,8 @@ static inline void stage_end(struct stage *s)
 static inline const struct mcr_emitter_functions *functions_of(uint32_t isa)
 {
 #if defined(__x86_64__)
-    static const struct mcr_emitter_functions *const all[] = {&mcr_emitter_functions_isa0, &mcr_emitter_functions_isa1, &mcr_emitter_functions_isa2};
+    static const struct mcr_emitter_functions *const all[] = {&mcr_emitter_functions_isa0, &mcr_emitter_functions_isa1,
+                                                              &mcr_emitter_functions_isa2};
     return isa <= 2 && isa <= mcr_cpu_isa() ? all[isa] : NULL;
 #else
     return isa == 0 ? &mcr_emitter_functions_isa0 : NULL;

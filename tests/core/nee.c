@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
  * A sampler with several techniques, for testing how the core combines them: `nee` draws points on emitters and continues by the material,
- * `neelight` looks for light with a direction technique as well.
+ * `neelight` looks for light with a direction technique as well. `skewed` is `nee` with a mistake: the density over emitters is 5 % too high.
  */
 #include <mcrender/sampler.h>
 
@@ -76,6 +76,24 @@ static int32_t density_emitter(const struct mcr_host *host, struct mcr_context *
     return host->light_density_point(host, context, MCR_LIGHT_BY_SOLID_ANGLE, at, points, density);
 }
 
+static int32_t draw_emitter_skewed(const struct mcr_host *host, struct mcr_context *context, const void *instance, uint32_t technique,
+                                   const struct mcr_points *at, const double *const *number, const struct mcr_emitter_points *out, double *density)
+{
+    int32_t status = draw_emitter(host, context, instance, technique, at, number, out, density);
+    for (uint32_t i = 0; i < at->n && density; i++)
+        density[i] *= 1.05;
+    return status;
+}
+
+static int32_t density_emitter_skewed(const struct mcr_host *host, struct mcr_context *context, const void *instance, uint32_t technique,
+                                      const struct mcr_points *at, const struct mcr_emitter_points *points, double *density)
+{
+    int32_t status = density_emitter(host, context, instance, technique, at, points, density);
+    for (uint32_t i = 0; i < at->n; i++)
+        density[i] *= 1.05;
+    return status;
+}
+
 #define HEAD(NAME) {sizeof(struct mcr_directions_plugin), MCR_KIND_DIRECTIONS, MCR_ISA_BASELINE, 0, NAME, "1", "Apache-2.0", "for tests", NULL}
 
 static const struct mcr_directions_plugin nee = {.head = HEAD("nee"),
@@ -92,5 +110,12 @@ static const struct mcr_directions_plugin neelight = {.head = HEAD("neelight"),
                                                       .density = density,
                                                       .draw_emitter = draw_emitter,
                                                       .density_emitter = density_emitter};
-static const struct mcr_descriptor *const list[] = {&nee.head, &neelight.head};
-MCR_EXPORT const struct mcr_plugin mcr_plugin = {sizeof mcr_plugin, MCR_PLUGIN_MAJOR, MCR_PLUGIN_MINOR, 2, list};
+static const struct mcr_directions_plugin skewed = {.head = HEAD("skewed"),
+                                                    .create = create,
+                                                    .techniques = one_emitter_technique,
+                                                    .draw = draw,
+                                                    .density = density,
+                                                    .draw_emitter = draw_emitter_skewed,
+                                                    .density_emitter = density_emitter_skewed};
+static const struct mcr_descriptor *const list[] = {&nee.head, &neelight.head, &skewed.head};
+MCR_EXPORT const struct mcr_plugin mcr_plugin = {sizeof mcr_plugin, MCR_PLUGIN_MAJOR, MCR_PLUGIN_MINOR, 3, list};

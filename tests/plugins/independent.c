@@ -17,7 +17,7 @@ int main(void)
     double *number[16];
 
     for (uint32_t i = 0; i < LANES; i++) {
-        pixel_key[i] = mcr_pixel_key(3, i / 10, 0);
+        pixel_key[i] = mcr_pixel_key(mcr_replicate_key(3, 0), i / 10);
         path_key[i] = mcr_path_key(pixel_key[i], i % 10);
         sample[i] = i % 10, planned[i] = 10;
         bounce[i] = i < 10 ? UINT32_MAX - i : i % 7 ? i % 7 : i * 1000003; /* far beyond 2^27, where 32 * bounce leaves 32 bits */

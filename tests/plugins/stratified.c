@@ -27,7 +27,7 @@ static int32_t make(double n, double m, void **instance)
 
 static void set(uint32_t lane, uint64_t pixel, uint32_t number, uint32_t of)
 {
-    pixel_key[lane] = mcr_pixel_key(7, pixel, 0);
+    pixel_key[lane] = mcr_pixel_key(mcr_replicate_key(7, 0), pixel);
     path_key[lane] = mcr_path_key(pixel_key[lane], number);
     sample[lane] = number;
     planned[lane] = of;

@@ -1,0 +1,35 @@
+# SPDX-License-Identifier: Apache-2.0
+# Completion for bash. Options come from --help, plugins from `mcrender plugins`, so that nothing has to be kept in step.
+# Installed as $(datadir)/bash-completion/completions/mcrender; or source it.
+
+_mcrender_words() # program: the words of all plugins
+{
+    "$1" plugins 2>/dev/null | sed -n 's/^  \([a-z][a-z0-9_-]*\)  .*/\1/p'
+}
+
+_mcrender()
+{
+    local program=${COMP_WORDS[0]} word=${COMP_WORDS[COMP_CWORD]} before=${COMP_WORDS[COMP_CWORD - 1]} command=
+    COMPREPLY=()
+    [ "$COMP_CWORD" -gt 1 ] && command=${COMP_WORDS[1]}
+    case $before in
+    --accel) mapfile -t COMPREPLY < <(compgen -W 'auto list bvh' -- "$word"); return ;;
+    --isa) mapfile -t COMPREPLY < <(compgen -W 'baseline avx2 avx512' -- "$word"); return ;;
+    --precision) mapfile -t COMPREPLY < <(compgen -W 'double' -- "$word"); return ;;
+    --bits) mapfile -t COMPREPLY < <(compgen -W '8 16' -- "$word"); return ;;
+    --sampler) mapfile -t COMPREPLY < <(compgen -W "$(_mcrender_words "$program")" -- "$word"); return ;;
+    --plugin) mapfile -t COMPREPLY < <(compgen -f -X '!*.so' -- "$word"; compgen -d -- "$word"); return ;;
+    -o | --report) mapfile -t COMPREPLY < <(compgen -f -- "$word"); return ;;
+    --spp | --depth | --seed | --threads | --size | --crop | --batch | --set | --exposure) return ;;
+    esac
+    if [[ $word == -* ]]; then
+        mapfile -t COMPREPLY < <(compgen -W "$("$program" --help 2>/dev/null | grep -oE '  -[-a-z]+' | tr -d ' ')" -- "$word")
+    elif [ "$command" = plugins ]; then
+        mapfile -t COMPREPLY < <(compgen -W "$(_mcrender_words "$program")" -- "$word")
+    else
+        mapfile -t COMPREPLY < <(compgen -f -X '!*.scn' -- "$word"; compgen -d -- "$word")
+        [ "$COMP_CWORD" = 1 ] && mapfile -t -O "${#COMPREPLY[@]}" COMPREPLY < <(compgen -W 'check plugins' -- "$word")
+    fi
+}
+
+complete -o filenames -F _mcrender mcrender
