@@ -92,7 +92,6 @@ static void cut_all(struct cutter *c, struct mcr_batch *b)
     b->job = cut(c, MCR_JOBS, sizeof *b->job);
     b->camera_x = cut(c, rays, sizeof(double));
     b->camera_y = cut(c, rays, sizeof(double));
-    b->camera_pixel = cut(c, rays, sizeof *b->camera_pixel);
     if (core->combines)
         cut_light(c, &b->light, b->lanes);
     b->scratch = cut(c, core->scratch_bytes, 1);

@@ -164,7 +164,6 @@ struct mcr_batch {
     const struct mcr_range *running; /* the range whose points a sampler works on, for the host's material services */
     /* for new camera paths */
     double *camera_x, *camera_y;
-    uint64_t *camera_pixel;
     /* counts, summed at the end */
     uint64_t not_finite, not_finite_cell; /* of the pass */
     uint32_t not_finite_sample;
@@ -185,8 +184,7 @@ struct mcr_camera_lanes {
 /* The stage functions, compiled once per instruction set. */
 struct mcr_stages {
     void (*camera)(const struct mcr_scene *scene, const struct mcr_camera_lanes *lanes);
-    void (*path_keys)(uint64_t replicate_key, uint32_t n, const uint64_t *pixel, const uint32_t *index, uint64_t *pixel_key,
-                      uint64_t *path_key);
+    void (*path_keys)(uint32_t n, const uint64_t *pixel_key, const uint32_t *index, uint64_t *path_key);
     /* Groups rays by what they hit: fills order, range, miss. */
     void (*sort)(struct mcr_batch *batch);
     /* Points and path states in sorted order. */

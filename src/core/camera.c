@@ -118,12 +118,9 @@ void MCR_ISA_NAME(mcr_stage_camera)(const struct mcr_scene *scene, const struct 
     }
 }
 
-void MCR_ISA_NAME(mcr_stage_path_keys)(uint64_t replicate_key, uint32_t n, const uint64_t *pixel, const uint32_t *index,
-                                       uint64_t *pixel_key, uint64_t *path_key)
+void MCR_ISA_NAME(mcr_stage_path_keys)(uint32_t n, const uint64_t *pixel_key, const uint32_t *index, uint64_t *path_key)
 {
     MCR_LANES
-    for (uint32_t i = 0; i < n; i++) {
-        pixel_key[i] = mcr_pixel_key(replicate_key, pixel[i]);
+    for (uint32_t i = 0; i < n; i++)
         path_key[i] = mcr_path_key(pixel_key[i], index[i]);
-    }
 }

@@ -51,8 +51,8 @@ MCR_INLINE double disk_axis(const struct disk_local *e, double square, double nn
     double m = w > low ? w : low, step = 0;
 #pragma GCC unroll 6
     for (int i = 0; i < 6; i++) {
-        double inverse = 1 / (area_square + m * (trace + m)), g = (k + m * vv) * inverse, slope = (vv - g * (trace + 2 * m)) * inverse;
-        step = (w + g - m) / (1 - slope);
+        double d = area_square + m * (trace + m), n = k + m * vv; /* v'(S + m)^-1 v = n / d; one division for the step */
+        step = d * (n - (m - w) * d) / (d * (d - vv) + n * (trace + 2 * m));
         m += step;
     }
     double inverse = 1 / (area_square + m * (trace + m));

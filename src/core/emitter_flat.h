@@ -88,7 +88,8 @@ MCR_INLINE double flat_area_density(const struct flat *f, double px, double py, 
 {
     double height = flat_height(f, px, py, pz), sink = fabs(f->nx * dx + f->ny * dy + f->nz * dz);
     double density = f->factor * (height * height) / (sink * sink * sink);
-    return ((height > f->above) | (height < f->below)) & (sink > 0) ? density : 0;
+    int crossed = ((height > f->above) | (height < f->below)) & (sink > 0);
+    return crossed ? density : 0;
 }
 
 /* The distance to the plane. */

@@ -59,7 +59,7 @@ MCR_INLINE double ball_area_density(const struct ball *s, double px, double py, 
 {
     double discriminant, middle = ball_middle(s, px, py, pz, dx, dy, dz, &discriminant), root = sqrt(discriminant > 0 ? discriminant : 0);
     double near = middle - root, far = middle + root, sum = (near > 0 ? near * near : 0) + (far > 0 ? far * far : 0);
-    return ball_seen(s, px, py, pz) & (discriminant > 0) ? s->spread * sum / root : 0;
+    return (ball_seen(s, px, py, pz) & (discriminant > 0)) ? s->spread * sum / root : 0;
 }
 
 /* 1 / (2 pi (1 - cos)) of the cone; only outside. */
@@ -89,7 +89,7 @@ MCR_INLINE double ball_point_density(const struct ball *s, double px, double py,
 {
     double qx = px - s->cx + distance * dx, qy = py - s->cy + distance * dy, qz = pz - s->cz + distance * dz;
     double cosine = fabs(qx * dx + qy * dy + qz * dz); /* times R */
-    return ball_seen(s, px, py, pz) & (cosine > 0) ? s->spread * (distance * distance) / cosine : 0;
+    return (ball_seen(s, px, py, pz) & (cosine > 0)) ? s->spread * (distance * distance) / cosine : 0;
 }
 
 MCR_INLINE void unit_sphere(double u, double v, double *x, double *y, double *z)
@@ -194,14 +194,14 @@ MCR_INLINE double egg_area_density(const struct egg *s, double px, double py, do
     double a, discriminant, middle = egg_middle(&r, &a, &discriminant);
     double slope = sqrt(a * (discriminant > 0 ? discriminant : 0)), root = slope / a;
     double near = middle - root, far = middle + root, sum = (near > 0 ? near * near : 0) + (far > 0 ? far * far : 0);
-    return egg_seen(s, &r) & (discriminant > 0) ? s->spread * sum / slope : 0;
+    return (egg_seen(s, &r) & (discriminant > 0)) ? s->spread * sum / slope : 0;
 }
 
 MCR_INLINE double egg_point_density(const struct egg *s, double px, double py, double pz, double dx, double dy, double dz, double distance)
 {
     struct egg_ray r = egg_ray(s, px, py, pz, dx, dy, dz);
     double slope = fabs((r.fx + distance * r.dx) * r.dx + (r.fy + distance * r.dy) * r.dy + (r.fz + distance * r.dz) * r.dz);
-    return egg_seen(s, &r) & (slope > 0) ? s->spread * (distance * distance) / slope : 0;
+    return (egg_seen(s, &r) & (slope > 0)) ? s->spread * (distance * distance) / slope : 0;
 }
 
 MCR_INLINE struct drawn egg_draw_area(const struct egg *s, int alone, double px, double py, double pz, double u, double v)

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/cpu.h"
+#include "base/random.h"
 #include "core/host.h"
 #include "core/light.h"
 #include "core/pass.h"
@@ -119,12 +120,13 @@ static void begin_paths(struct mcr_batch *batch, const struct mcr_pass *pass, st
         uint32_t end = i + (left < n - i ? left : n - i);
         uint64_t cell = job->first_cell + path / pass->cell_samples, pixel = cell % pass->pixels;
         uint32_t x = film->x0 + (uint32_t)(pixel % width), y = film->y0 + (uint32_t)(pixel / width);
+        uint64_t key = mcr_pixel_key(pass->replicate_key, (uint64_t)y * film->width + x);
         uint64_t first = pass->first + cell / pass->pixels * pass->cell_samples + sample - i;
         MCR_LANES
         for (uint32_t j = i; j < end; j++) {
             batch->camera_x[j] = x;
             batch->camera_y[j] = y;
-            batch->camera_pixel[j] = (uint64_t)y * film->width + x;
+            paths->pixel_key[to + j] = key;
             paths->index[to + j] = (uint32_t)first + j;
         }
         i = end;
@@ -151,8 +153,7 @@ static int32_t camera(struct mcr_batch *batch, struct mcr_pass *pass)
         uint32_t room = core->capacity - batch->rays, to = batch->states, n = job->paths - job->begun < room ? job->paths - job->begun : room;
         int lens = core->scene->camera.kind == MCR_CAMERA_THIN_LENS && core->scene->camera.lens_radius > 0;
         begin_paths(batch, pass, job, to, n);
-        core->stages->path_keys(pass->replicate_key, n, batch->camera_pixel, paths->index + to, paths->pixel_key + to,
-                                paths->path_key + to);
+        core->stages->path_keys(n, paths->pixel_key + to, paths->index + to, paths->path_key + to);
         int32_t status = mcr_numbers(batch, paths, to, to + n, 0, 2, batch->number);
         if (!status && lens)
             status = mcr_numbers(batch, paths, to, to + n, MCR_DIMENSION_LENS, 2, batch->number + 2);
