@@ -162,10 +162,10 @@ static inline const struct mcr_accel_functions *functions_of(uint32_t isa, uint3
 {
     if (isa > mcr_cpu_isa())
         return NULL;
-#if defined(__x86_64__)
+#if MCR_ISA_COUNT > 1
     return isa == 2 ? &mcr_accel_functions_isa2[kind] : isa == 1 ? &mcr_accel_functions_isa1[kind] : &mcr_accel_functions_isa0[kind];
 #else
-    return isa ? NULL : &mcr_accel_functions_isa0[kind];
+    return isa > 0 ? NULL : &mcr_accel_functions_isa0[kind];
 #endif
 }
 
