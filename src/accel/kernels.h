@@ -197,8 +197,11 @@ static inline int kernel_triangle(const struct mcr_shear *s, double ax, double a
     double sum = u + v + w;
     double t = (u * ar + v * br + w * cr) / sum;
     int inside = ((u >= 0) & (v >= 0) & (w >= 0)) | ((u <= 0) & (v <= 0) & (w <= 0));
+    /* Seen edge-on u, v, w are rounding alone: the ray has to pass the projection's bounds as well. Exact, so that it opens no crack. */
+    int left = (ap <= 0) | (bp <= 0) | (cp <= 0), right = (ap >= 0) | (bp >= 0) | (cp >= 0);
+    int below = (aq <= 0) | (bq <= 0) | (cq <= 0), above = (aq >= 0) | (bq >= 0) | (cq >= 0);
     *at = t;
-    return inside & (t > 0);
+    return inside & left & right & below & above & (t > 0);
 }
 
 #endif

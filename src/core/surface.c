@@ -62,10 +62,14 @@ static inline __attribute__((always_inline)) void points(struct mcr_batch *batch
 
 static void identities(struct mcr_batch *batch)
 {
-    const struct mcr_surface_points *at = &batch->at;
-    for (uint32_t k = 0; k < batch->points; k++) {
-        at->primitive[k] = batch->hit[batch->order[k]];
-        at->material[k] = batch->core->surfaces.material[at->primitive[k]];
+    const uint32_t *order = batch->order, *material_of = batch->core->surfaces.material, n = batch->points;
+    const int64_t *hit = batch->hit;
+    uint32_t *material = batch->at.material;
+    int64_t *primitive = batch->at.primitive;
+    MCR_LANES
+    for (uint32_t k = 0; k < n; k++) {
+        primitive[k] = hit[order[k]];
+        material[k] = material_of[primitive[k]];
     }
 }
 
@@ -81,10 +85,13 @@ static void states(struct mcr_batch *batch)
         to->b[k] = from->b[l];
         to->path_key[k] = from->path_key[l];
     }
-    for (uint32_t k = 0; k < batch->points; k++) {
+    const uint32_t *bounce = from->bounce, *slot = from->slot, n = batch->points;
+    uint32_t *to_bounce = to->bounce, *to_slot = to->slot;
+    MCR_LANES
+    for (uint32_t k = 0; k < n; k++) {
         uint32_t l = source[order[k]];
-        to->bounce[k] = from->bounce[l];
-        to->slot[k] = from->slot[l];
+        to_bounce[k] = bounce[l];
+        to_slot[k] = slot[l];
     }
     if (batch->core->needs_samples)
         for (uint32_t k = 0; k < batch->points; k++) {

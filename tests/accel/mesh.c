@@ -84,7 +84,7 @@ static void count_misses(const char *what, const struct stage *s, struct bundle 
 {
     for (uint32_t kind = list ? 0 : 1; kind < 2; kind++) {
         uint32_t missed = 0;
-        bundle_trace(b, s, mcr_cpu_isa(), kind);
+        bundle_trace(b, s, best_isa(), kind);
         for (uint32_t i = 0; i < b->n; i++)
             missed += b->primitive[i] < 0;
         ok(missed == 0, "%s, %u triangles, %s: %u of %u rays at its edges missed", what, s->scene.triangles.count, accel_name[kind], missed, b->n);

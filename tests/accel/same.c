@@ -182,7 +182,7 @@ static void test_ties(void)
             bundle_aim(&b, i, o, to);
         }
         for (uint32_t kind = 0; kind < 2; kind++) {
-            bundle_trace(&b, s, mcr_cpu_isa(), kind);
+            bundle_trace(&b, s, best_isa(), kind);
             for (uint32_t i = 0; i < b.n; i++) {
                 hits += b.primitive[i] >= 0;
                 wrong += b.primitive[i] >= (int64_t)half;

@@ -157,15 +157,22 @@ static inline void stage_destroy(struct stage *s)
     free(s);
 }
 
-/* kind 0: list, 1: bvh. NULL where this processor lacks the instruction set. */
+/* The most that this processor and this build have. */
+static inline uint32_t best_isa(void)
+{
+    uint32_t isa = mcr_cpu_isa();
+    return isa < MCR_ISA_COUNT ? isa : MCR_ISA_COUNT - 1;
+}
+
+/* kind 0: list, 1: bvh. NULL where this processor or build lacks the instruction set. */
 static inline const struct mcr_accel_functions *functions_of(uint32_t isa, uint32_t kind)
 {
-    if (isa > mcr_cpu_isa())
+    if (isa > best_isa())
         return NULL;
 #if MCR_ISA_COUNT > 1
     return isa == 2 ? &mcr_accel_functions_isa2[kind] : isa == 1 ? &mcr_accel_functions_isa1[kind] : &mcr_accel_functions_isa0[kind];
 #else
-    return isa > 0 ? NULL : &mcr_accel_functions_isa0[kind];
+    return &mcr_accel_functions_isa0[kind];
 #endif
 }
 

@@ -102,7 +102,7 @@ static void test_wall(double radius, int inside)
     for (uint32_t kind = 0; kind < 2; kind++) {
         double worst = 0;
         uint32_t missed = 0;
-        bundle_trace(&b, s, mcr_cpu_isa(), kind);
+        bundle_trace(&b, s, best_isa(), kind);
         for (uint32_t i = 0; i < RAYS; i++) {
             missed += b.primitive[i] != 0;
             worst = b.primitive[i] == 0 ? fmax(worst, off_surface(&b, i, c, radius)) : worst;

@@ -96,7 +96,7 @@ for kind in sphere triangle; do
         render "$TMPDIR/crowd.scn" --size 8x8 --spp 1 --accel auto
         list=$(most <"$TMPDIR/list.rays") bvh=$(most <"$TMPDIR/bvh.rays")
         printf '  %-10s %5s %8.2f %8.2f %10.2f   %s\n' $kind $n "$list" "$bvh" "$(compute %.3f "$bvh / $list")" "$(value accelerator)"
-        clear=$(compute %d "$bvh > 1.3 * $list")
+        clear=$(compute %d "($bvh > 1.3 * $list)")
         [ "$clear" = 0 ] || break # the list only gets slower
     done
 done
