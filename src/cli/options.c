@@ -222,7 +222,7 @@ static int take(struct mcr_options *options, const struct option *option, const 
     case ISA:
         return take_isa(options, text);
     case BATCH:
-        return whole32("--batch", text, 1, 1u << 20, &o->batch, &o->has_batch);
+        return whole32("--batch", text, 0, 65536, &o->batch, &o->has_batch);
     case SET:
         return take_set(options, text);
     case PLUGIN:

@@ -66,7 +66,7 @@ static const struct mcr_parameter roulette[] = {
 static const struct mcr_parameter render[] = {
     [RENDER_SAMPLER] = WORD("sampler", MCR_WORD_SAMPLER, 0,
                             "How directions and numbers are drawn; by default mixture(cosine 1, light 1) where there is light to sample, else cosine."),
-    [RENDER_SPP] = ROW("spp", MCR_TYPE_INTEGER, 0, "", 1, 2147483648.0, 16, 0, 0, "Samples per pixel."),
+    [RENDER_SPP] = ROW("spp", MCR_TYPE_INTEGER, 0, "", 1, 2147483647.0, 16, 0, 0, "Samples per pixel."),
     [RENDER_DEPTH] = ROW("depth", MCR_TYPE_INTEGER, 0, "", 0, 2147483646, 50, 0, 0,
                          "Scattering events of a path at most; 0 shows emission only."),
     [RENDER_SEED] = ROW("seed", MCR_TYPE_INTEGER, 0, "", 0, 9007199254740992.0, 0, 0, 0, "Another seed gives other noise."),

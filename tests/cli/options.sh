@@ -87,7 +87,7 @@ for bad in 0 -1 1.5 '' x 4x 0x4 ' 4' +4 2147483648 99999999999999999999999; do r
 for bad in -1 1e3 2147483647; do refused "--depth expects a whole number from 0" --depth "$bad"; done
 for bad in -1 x 9007199254740993; do refused "--seed expects a whole number from 0" --seed "$bad"; done
 for bad in -1 x 1025; do refused "--threads expects a whole number from 0" --threads "$bad"; done
-for bad in 0 x 1048577; do refused "--batch expects a whole number from 1" --batch "$bad"; done
+for bad in -1 x 65537; do refused "--batch expects a whole number from 0" --batch "$bad"; done
 for bad in 8 8x 0x8 8x0 8x8x8 8,8 -8x8 8x65537 8X8 '8 x8'; do refused "--size expects WIDTHxHEIGHT" --size "$bad"; done
 for bad in 1,2,3 1,2,3,4,5 a,b,c,d 1,2,3,-4 1x2x3x4; do refused "--crop expects X0,Y0,X1,Y1" --crop "$bad"; done
 for bad in 4,0,4,8 0,4,8,4 5,0,4,8; do refused "--crop $bad is empty" --crop "$bad"; done

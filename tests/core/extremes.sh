@@ -15,7 +15,7 @@ room() # WHAT SCALE OFFSET ROTATION FRONT REST ARGUMENT...
 mcrender 1
 let s = $scale
 let o = $offset
-# The view turns with the room: about the axis (0, 0, 1), so that the camera can be told in closed form.
+# The room is turned about its view, the x axis, and with it about z.
 let t = $turn
 camera perspective { from (o, -0.7 * o, 0.3 * o)   to (o + s * cos(t), -0.7 * o + s * sin(t), 0.3 * o)   up (0, 0, 1)   fov 60 }
 film { size (256, 256) }
@@ -23,7 +23,7 @@ render { sampler cosine   roulette off   depth 1   background 1e30   spp 4 }
 material dark lambert { albedo 1 }
 material bright emitter { radiance 1   sides two }
 group {
-    transform { rotate (0, 0, 1, t)   scale s   translate (o, -0.7 * o, 0.3 * o) }
+    transform { rotate (1, 0, 0, t - 8)   rotate (0, 0, 1, t)   scale s   translate (o, -0.7 * o, 0.3 * o) }
     $front
     $rest
 }
