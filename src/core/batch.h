@@ -160,6 +160,9 @@ struct mcr_batch {
     char *scratch;                  /* scratch_bytes */
     uint64_t scratch_used;
     struct mcr_context context;
+    double *kept;                   /* of the last light_draw: see struct mcr_emitter_functions */
+    const double *kept_at;          /* the points that it was for; NULL when they are gone */
+    uint32_t kept_by, kept_n;
     const struct mcr_node *failed;  /* whose operation failed, or NULL */
     const struct mcr_range *running; /* the range whose points a sampler works on, for the host's material services */
     /* for new camera paths */

@@ -208,12 +208,14 @@ static void choose_many(const struct mcr_emitters *all, uint32_t n, const double
 
 /* Draws in lanes of one kind; where solid angle is not steady, by area. */
 static void draw_lanes(const struct mcr_emitters *all, uint32_t kind, uint32_t by, int alone, const struct mcr_emitter_lanes *lanes,
-                       const double *k, int varying, struct mcr_emitter_scratch *s)
+                       const double *k, int varying, double *kept, struct mcr_emitter_scratch *s)
 {
     struct mcr_emitter_pack *second = &s->second;
     const double *restrict density = lanes->density;
     uint32_t falling = 0, count = 0;
     DRAW(all, kind, by, alone, lanes, k, varying, &s->solid);
+    if (kept)
+        memcpy(kept, density, lanes->n * sizeof *kept);
     if (by == MCR_LIGHT_BY_AREA)
         return;
     for (uint32_t i = 0; i < lanes->n; i++)
@@ -292,7 +294,7 @@ static void draw_group(const struct mcr_emitters *all, uint32_t by, int alone, u
     gather_points(block, padded, pack->lane, pack);
     gather_numbers(block, padded, pack->lane, pack);
     const double *k = group_constants(all, group, padded, pack->lane, s);
-    draw_lanes(all, kind, by, alone, &lanes, k, by_kind(all), s);
+    draw_lanes(all, kind, by, alone, &lanes, k, by_kind(all), NULL, s);
     scatter_drawn(count, pack->lane, pack, block);
 }
 
@@ -301,7 +303,7 @@ static void draw_group(const struct mcr_emitters *all, uint32_t by, int alone, u
  * chosen.
  */
 static void draw_block(const struct mcr_emitters *all, uint32_t by, int alone, const struct mcr_emitter_lanes *block, const double *number,
-                       struct mcr_emitter_scratch *s)
+                       double *kept, struct mcr_emitter_scratch *s)
 {
     uint32_t n = block->n;
     if (all->count == 0) {
@@ -310,7 +312,7 @@ static void draw_block(const struct mcr_emitters *all, uint32_t by, int alone, c
         return;
     }
     if (all->count == 1) {
-        draw_lanes(all, all->emitter[0].kind, by, alone, block, all->k[0], 0, s);
+        draw_lanes(all, all->emitter[0].kind, by, alone, block, all->k[0], 0, kept, s);
         return;
     }
     if (shares(all)) {
@@ -460,13 +462,48 @@ static void scale(uint32_t n, const double *restrict factor, double *restrict va
         value[i] *= factor[i];
 }
 
+/*
+ * A single flat emitter has one density by solid angle at a point, whatever the direction, which the draw had to find: it need not be found again.
+ * Where it was not steady (negative), it is by area and must be.
+ */
+static int keeps(const struct mcr_emitters *all, uint32_t by)
+{
+    return all->count == 1 && by == MCR_LIGHT_BY_SOLID_ANGLE &&
+           (all->emitter[0].kind == MCR_EMITTER_PARALLELOGRAM || all->emitter[0].kind == MCR_EMITTER_TRIANGLE);
+}
+
+static void kept_density(const struct mcr_emitters *all, uint32_t by, const struct mcr_emitter_lanes *block, const double *restrict kept,
+                         double *restrict out, struct mcr_emitter_scratch *s)
+{
+    const uint32_t n = block->n;
+    double *restrict flag = s->flag;
+    uint32_t falling = 0;
+    CROSS(all, 0, block, flag);
+    MCR_LANES
+    for (uint32_t i = 0; i < n; i++)
+        out[i] = flag[i] != 0 ? kept[i] : 0;
+    for (uint32_t i = 0; i < n; i++)
+        falling += out[i] < 0;
+    if (falling > 0) {
+        for (uint32_t i = 0; i < n; i++)
+            out[i] = 0;
+        add_emitter(all, 0, by, block, NULL, out, s);
+        for (uint32_t i = 0; i < n; i++)
+            out[i] = flag[i] != 0 && kept[i] >= 0 ? kept[i] : out[i];
+    }
+}
+
 static void density(const struct mcr_emitters *all, void *scratch, uint32_t by, const struct mcr_points *at,
-                    const struct mcr_directions *toward, double *out)
+                    const struct mcr_directions *toward, const double *kept, double *out)
 {
     struct mcr_emitter_scratch *s = scratch;
     for (uint32_t base = 0; base < at->n; base += MCR_EMITTER_BLOCK) {
         struct mcr_emitter_lanes block = block_points(at, base);
         block.wx = toward->x + base, block.wy = toward->y + base, block.wz = toward->z + base;
+        if (kept && keeps(all, by)) {
+            kept_density(all, by, &block, kept + base, out + base, s);
+            continue;
+        }
         for (uint32_t i = 0; i < block.n; i++)
             out[base + i] = 0;
         add_all(all, by, &block, NULL, out + base, s);
@@ -493,7 +530,7 @@ static void complete(const struct mcr_emitters *all, uint32_t by, const struct m
 }
 
 static void draw(const struct mcr_emitters *all, void *scratch, uint32_t by, const struct mcr_points *at, const double *const *number,
-                 const struct mcr_directions *out, double *out_density)
+                 const struct mcr_directions *out, double *out_density, double *kept)
 {
     struct mcr_emitter_scratch *s = scratch;
     for (uint32_t base = 0; base < at->n; base += MCR_EMITTER_BLOCK) {
@@ -502,7 +539,7 @@ static void draw(const struct mcr_emitters *all, void *scratch, uint32_t by, con
         block.wx = out->x + base, block.wy = out->y + base, block.wz = out->z + base;
         block.density = out_density && all->count <= 1 ? out_density + base : s->density;
         block.distance = s->distance;
-        draw_block(all, by, 0, &block, number[0] + base, s);
+        draw_block(all, by, 0, &block, number[0] + base, kept && keeps(all, by) ? kept + base : NULL, s);
         if (out_density && all->count > 1)
             complete(all, by, &block, out_density + base, s);
     }
@@ -580,7 +617,7 @@ static void draw_point(const struct mcr_emitters *all, void *scratch, uint32_t b
             s->chosen[i] = 0;
             s->share[i] = 1;
         }
-        draw_block(all, by, 1, &block, number[0] + base, s);
+        draw_block(all, by, 1, &block, number[0] + base, NULL, s);
         if (by == MCR_LIGHT_BY_SOLID_ANGLE)
             find_distances(all, &block, s);
         store_points(all, &block, out, base, out_density, s);

@@ -86,14 +86,15 @@ size_t mcr_emitters_scratch(const struct mcr_emitters *emitters, uint32_t n);
 
 /*
  * The services, one set for each instruction set, all with the same bits. Contracts as in struct mcr_host: `by` is MCR_LIGHT_BY_*,
+ * `kept` (at->n, may be NULL) takes along from a draw what the density at the same points with the same `by` can use again: pass it on or pass NULL.
  * number[0] chooses the emitter, number[1] and [2] the point. `density` may be NULL in the draws. A lane's results depend on nothing but
  * that lane.
  */
 struct mcr_emitter_functions {
     void (*draw)(const struct mcr_emitters *emitters, void *scratch, uint32_t by, const struct mcr_points *at, const double *const *number,
-                 const struct mcr_directions *out, double *density);
+                 const struct mcr_directions *out, double *density, double *kept);
     void (*density)(const struct mcr_emitters *emitters, void *scratch, uint32_t by, const struct mcr_points *at,
-                    const struct mcr_directions *toward, double *density);
+                    const struct mcr_directions *toward, const double *kept, double *density);
     void (*mass)(const struct mcr_emitters *emitters, void *scratch, uint32_t by, const struct mcr_points *at, double *mass);
     void (*draw_point)(const struct mcr_emitters *emitters, void *scratch, uint32_t by, const struct mcr_points *at,
                        const double *const *number, const struct mcr_emitter_points *out, double *density);

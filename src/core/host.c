@@ -155,13 +155,18 @@ static int32_t child_mass(const struct mcr_host *host, struct mcr_context *conte
 static int32_t light_draw(const struct mcr_host *host, struct mcr_context *context, uint32_t by, const struct mcr_points *at,
                           const double *const *number, const struct mcr_directions *out, double *density)
 {
-    WITH_LIGHTS(draw(core->emitters, context->scratch, by, at, number, out, density));
+    batch_of(context)->kept_at = at->px;
+    batch_of(context)->kept_by = by;
+    batch_of(context)->kept_n = at->n;
+    WITH_LIGHTS(draw(core->emitters, context->scratch, by, at, number, out, density, batch->kept));
 }
 
 static int32_t light_density(const struct mcr_host *host, struct mcr_context *context, uint32_t by, const struct mcr_points *at,
                              const struct mcr_directions *toward, double *density)
 {
-    WITH_LIGHTS(density(core->emitters, context->scratch, by, at, toward, density));
+    const struct mcr_batch *b = batch_of(context);
+    const double *kept = b->kept_at == at->px && b->kept_n == at->n && b->kept_by == by ? b->kept : NULL;
+    WITH_LIGHTS(density(core->emitters, context->scratch, by, at, toward, kept, density));
 }
 
 static int32_t light_mass(const struct mcr_host *host, struct mcr_context *context, uint32_t by, const struct mcr_points *at, double *mass)

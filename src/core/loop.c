@@ -224,6 +224,7 @@ static int32_t scatter_range(struct mcr_batch *batch, const struct mcr_range *ra
     for (uint32_t t = 0; t < core->continuing; t++)
         first += node->technique[t].dimensions;
     batch->running = range;
+    batch->kept_at = NULL;
     TIMED(MCR_STAGE_NUMBERS, status = mcr_numbers(batch, &batch->sorted, b, range->end, MCR_DIMENSION_SAMPLER, core->dimensions, number));
     if (!status)
         TIMED(MCR_STAGE_SAMPLER,

@@ -16,11 +16,11 @@ says() { [ "$(json "$1")" = "$2" ]; }
 
 for sampler in light 'light(by=area)' 'stratified(light)'; do
     run "$sampler"
-    check "$sampler: INCOMPLETE in the text" grep -q '^coverage  INCOMPLETE: .*it misses reflected light' "$TMPDIR/text"
+    check "$sampler: INCOMPLETE in the text" grep -q '^coverage  INCOMPLETE: .*misses reflected light' "$TMPDIR/text"
     check "$sampler: not complete in JSON" says complete false
     check "$sampler: JSON says what is missing" grep -q reflected <(json missing)
     run "$sampler" --quiet
-    check "$sampler: a warning where the report is not printed" grep -q 'warning: .*coverage is incomplete' "$TMPDIR/text"
+    check "$sampler: a warning where the report is not printed" grep -q 'warning: .*misses reflected light' "$TMPDIR/text"
 done
 for sampler in cosine uniform 'mixture(cosine 1, light 1)' 'stratified(mixture(light 3, uniform 1))'; do
     run "$sampler"

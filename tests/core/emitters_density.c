@@ -89,11 +89,12 @@ struct drawn_facts {
 static void draw_all(const struct stage *s, const struct mcr_emitter_functions *f, uint32_t by, const struct cone *c, struct batch *b,
                      struct drawn_facts *facts)
 {
-    double *again = doubles(b->n);
+    double *again = doubles(b->n), *kept = doubles(b->n);
     for (uint32_t round = 0; round < ROUNDS; round++) {
         batch_numbers(b, 5000 + round);
         batch_draw(b, s, f, by);
         batch_density(b, s, f, by, again);
+        batch_density_kept(b, s, f, by, kept);
         for (uint32_t i = 0; i < b->n; i++) {
             double x = b->x[i], y = b->y[i], z = b->z[i];
             facts->total++;
@@ -105,11 +106,12 @@ static void draw_all(const struct stage *s, const struct mcr_emitter_functions *
             facts->count[cone_cell(c, x, y, z)]++;
             facts->bent = fmax(facts->bent, fabs(x * x + y * y + z * z - 1));
             if (again[i] > 0 && b->density[i] > 0)
-                facts->worst = fmax(facts->worst, fabs(b->density[i] / again[i] - 1));
+                facts->worst = fmax(facts->worst, fmax(fabs(b->density[i] / again[i] - 1), fabs(kept[i] / again[i] - 1)));
             else
                 facts->lost++;
         }
     }
+    free(kept);
     free(again);
 }
 

@@ -157,14 +157,14 @@ static inline void fill_numbers(uint64_t key, uint32_t n, double *out)
 /* A batch of lanes: points, numbers, directions, results. */
 struct batch {
     uint32_t n;
-    double *px, *py, *pz, *u[3], *x, *y, *z, *density;
+    double *px, *py, *pz, *u[3], *x, *y, *z, *density, *kept;
     struct mcr_points at;
     struct mcr_directions toward;
 };
 
 static inline void batch_begin(struct batch *b, uint32_t n)
 {
-    double **all[] = {&b->px, &b->py, &b->pz, &b->u[0], &b->u[1], &b->u[2], &b->x, &b->y, &b->z, &b->density};
+    double **all[] = {&b->px, &b->py, &b->pz, &b->u[0], &b->u[1], &b->u[2], &b->x, &b->y, &b->z, &b->density, &b->kept};
     memset(b, 0, sizeof *b);
     for (size_t i = 0; i < sizeof all / sizeof *all; i++)
         *all[i] = doubles(n);
@@ -175,7 +175,7 @@ static inline void batch_begin(struct batch *b, uint32_t n)
 
 static inline void batch_end(struct batch *b)
 {
-    double *all[] = {b->px, b->py, b->pz, b->u[0], b->u[1], b->u[2], b->x, b->y, b->z, b->density};
+    double *all[] = {b->px, b->py, b->pz, b->u[0], b->u[1], b->u[2], b->x, b->y, b->z, b->density, b->kept};
     for (size_t i = 0; i < sizeof all / sizeof *all; i++)
         free(all[i]);
 }
@@ -198,12 +198,18 @@ static inline void batch_numbers(struct batch *b, uint64_t key)
 
 static inline void batch_draw(struct batch *b, const struct stage *s, const struct mcr_emitter_functions *f, uint32_t by)
 {
-    f->draw(s->emitters, s->scratch, by, &b->at, (const double *const *)b->u, &b->toward, b->density);
+    f->draw(s->emitters, s->scratch, by, &b->at, (const double *const *)b->u, &b->toward, b->density, b->kept);
 }
 
 static inline void batch_density(struct batch *b, const struct stage *s, const struct mcr_emitter_functions *f, uint32_t by, double *out)
 {
-    f->density(s->emitters, s->scratch, by, &b->at, &b->toward, out);
+    f->density(s->emitters, s->scratch, by, &b->at, &b->toward, NULL, out);
+}
+
+/* The same, with what the last draw kept. */
+static inline void batch_density_kept(struct batch *b, const struct stage *s, const struct mcr_emitter_functions *f, uint32_t by, double *out)
+{
+    f->density(s->emitters, s->scratch, by, &b->at, &b->toward, b->kept, out);
 }
 
 /* Mean and its standard error. */
