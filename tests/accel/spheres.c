@@ -63,18 +63,15 @@ static void test_far(double distance)
     for (uint32_t kind = 0; kind < 2; kind++)
         for (uint32_t isa = 0; functions_of(isa, kind) && isa < 3; isa++) {
             uint32_t wrong = 0;
-            double worst = 0;
             bundle_trace(&b, s, isa, kind);
             hits = 0;
             for (uint32_t i = 0; i < RAYS; i++) {
                 int hit = b.primitive[i] == 0;
                 hits += hit;
-                wrong += hit != crosses(&b, i, c, 1);
-                if (hit)
-                    worst = fmax(worst, fabs(b.t[i] - distance) > 3);
+                wrong += hit != crosses(&b, i, c, 1) || (hit && fabs(b.t[i] - distance) > 3);
             }
-            ok(wrong == 0 && worst == 0 && hits > RAYS / 3 && hits < RAYS / 3 * 2, "radius 1 at %g, %s, instruction set %u: %u of %u rays wrong (%u hit)", distance,
-               accel_name[kind], isa, wrong, RAYS, hits);
+            ok(wrong == 0 && hits > RAYS / 3 && hits < RAYS / 3 * 2, "radius 1 at %g, %s, instruction set %u: %u of %u rays wrong (%u hit)",
+               distance, accel_name[kind], isa, wrong, RAYS, hits);
         }
     bundle_destroy(&b);
     stage_destroy(s);
