@@ -82,6 +82,7 @@ static void cut_all(struct cutter *c, struct mcr_batch *b)
     b->zone_list = cut(c, (2 * (size_t)groups + 1) * rays, sizeof *b->zone_list);
     for (uint32_t k = 0; k < MCR_NUMBERS_MAX; k++)
         b->number[k] = cut(c, b->lanes, sizeof(double));
+    b->material_density = cut(c, b->lanes, sizeof(double));
     b->kept = cut(c, rays, sizeof(double));
     b->roulette = cut(c, b->lanes, sizeof(double));
     b->lane_input = cut(c, (size_t)core->channels * b->lanes, sizeof(double));

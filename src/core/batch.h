@@ -150,6 +150,7 @@ struct mcr_batch {
     double *number[MCR_NUMBERS_MAX], *roulette;
     double *wx, *wy, *wz, *density; /* drawn directions */
     double *fr, *fg, *fb;           /* f * cos */
+    double *material_density;       /* that the material's own sampling has for the drawn directions; for roulette */
     double *alive;                  /* 1 or 0 */
     struct mcr_light_lanes light;
     double *lane_input;             /* channels * capacity: inputs that vary from lane to lane */

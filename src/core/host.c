@@ -242,6 +242,20 @@ int32_t mcr_group_evaluate(struct mcr_batch *batch, const struct mcr_range *rang
     return leave(batch, &was, status);
 }
 
+int32_t mcr_group_density(struct mcr_batch *batch, const struct mcr_range *range, const struct mcr_directions *toward, double *density)
+{
+    const struct mcr_group *group = &batch->core->group[range->group];
+    struct mcr_points at = mcr_batch_points(batch, range->begin, range->end);
+    if (!group->plugin->density) {
+        memset(density, 0, at.n * sizeof *density);
+        return MCR_OK;
+    }
+    struct mcr_inputs inputs = mcr_group_inputs(batch, group, batch->at.material, range->begin, range->end);
+    struct frame was = enter(batch, group->node, mcr_material_bytes(group, at.n));
+    int32_t status = group->plugin->density(&batch->core->host, &batch->context, group->instance, &inputs, &at, toward, density);
+    return leave(batch, &was, status);
+}
+
 static int32_t emission(struct mcr_batch *batch, const struct mcr_group *group, const struct mcr_points *at, const struct mcr_inputs *inputs,
                         const struct mcr_colours *out)
 {

@@ -26,6 +26,8 @@ int32_t mcr_node_density_emitter(struct mcr_batch *batch, const struct mcr_node 
 /* The material of a range of points. */
 int32_t mcr_group_evaluate(struct mcr_batch *batch, const struct mcr_range *range, const struct mcr_directions *toward,
                            const struct mcr_colours *out);
+/* The density of the material's own sampling; 0 if it has none. */
+int32_t mcr_group_density(struct mcr_batch *batch, const struct mcr_range *range, const struct mcr_directions *toward, double *density);
 int32_t mcr_group_emission(struct mcr_batch *batch, const struct mcr_range *range, const struct mcr_colours *out);
 /* The same for points elsewhere, all of one group; material[0 .. n-1] are theirs. */
 int32_t mcr_points_emission(struct mcr_batch *batch, const struct mcr_group *group, const struct mcr_points *at, const uint32_t *material,

@@ -234,6 +234,8 @@ static int32_t scatter_range(struct mcr_batch *batch, const struct mcr_range *ra
     if (!status)
         TIMED(MCR_STAGE_MATERIAL, status = mcr_group_evaluate(batch, range, &toward, &out));
     if (!status && core->scene->render.roulette)
+        TIMED(MCR_STAGE_MATERIAL, status = mcr_group_density(batch, range, &toward, batch->material_density + b));
+    if (!status && core->scene->render.roulette)
         TIMED(MCR_STAGE_NUMBERS, status = mcr_numbers(batch, &batch->sorted, b, range->end, MCR_DIMENSION_ROULETTE, 1, &roulette));
     batch->running = NULL;
     if (status)

@@ -1,7 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * One scattering event: throughput times f cos / density, then Russian roulette: a path goes on with the probability of its largest throughput
- * component (at most 1) and is weighted up by its inverse (Arvo and Kirk, "Particle transport and image synthesis", 1990).
+ * One scattering event: throughput times f cos / density, then Russian roulette (Arvo and Kirk, "Particle transport and image synthesis", 1990): a path
+ * goes on with a chance and is weighted up by its inverse.
+ *
+ * The chance is the share of light that the surface scatters, f cos over the density of the material's own sampling (for Lambert: the albedo), and
+ * not the throughput: a sampler that aims at lights has low throughput just where much light is to be found, and would lose the paths that
+ * matter. Where the material has no such density the path goes on.
  * Stage file, compiled once per instruction set.
  */
 #include "core/stages.h"
@@ -26,12 +30,14 @@ void MCR_ISA_NAME(mcr_stage_scatter)(struct mcr_batch *batch, uint32_t begin, ui
     }
     if (u) {
         const uint32_t *bounce = paths->bounce;
+        const double *own = batch->material_density;
         const uint32_t from = batch->core->scene->render.roulette_from;
         MCR_LANES
         for (uint32_t k = begin; k < end; k++) {
-            double most = r[k] > g[k] ? r[k] : g[k];
-            most = most > b[k] ? most : b[k];
-            double chance = ((bounce[k] >= from) & (most < 1)) ? most : 1.0;
+            double most = fr[k] > fg[k] ? fr[k] : fg[k];
+            most = most > fb[k] ? most : fb[k];
+            double share = most / (own[k] > 0 ? own[k] : 1.0);
+            double chance = ((own[k] > 0) & (share < 1) & (bounce[k] >= from)) ? share : 1.0;
             double inverse = 1 / (chance > 0 ? chance : 1.0);
             r[k] *= inverse;
             g[k] *= inverse;

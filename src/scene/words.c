@@ -60,7 +60,7 @@ static const struct mcr_parameter gaussian_filter[] = {
     [FILTER_SIGMA] = ROW("sigma", MCR_TYPE_NUMBER, ABOVE, "pixels", 0, 64, 0.5, 0, 0, "Standard deviation."),
 };
 static const struct mcr_parameter roulette[] = {
-    ROW("from", MCR_TYPE_INTEGER, 0, "", 0, 2147483646, 3, 0, 0, "The first scattering event, counted from 0, at which it may end a path."),
+    ROW("from", MCR_TYPE_INTEGER, 0, "", 0, 2147483646, 8, 0, 0, "The first scattering event, counted from 0, at which it may end a path."),
 };
 
 static const struct mcr_parameter render[] = {
@@ -73,7 +73,7 @@ static const struct mcr_parameter render[] = {
     [RENDER_THREADS] = ROW("threads", MCR_TYPE_INTEGER, 0, "", 0, 1024, 0, 0, 0, "Threads; 0 takes all processors."),
     [RENDER_REPLICATES] = ROW("replicates", MCR_TYPE_INTEGER, 0, "", 1, 4096, 0, 0, 0,
                               "Independent repetitions for the error estimate; by default 1, with correlated numbers 2 from 16 spp on."),
-    [RENDER_ROULETTE] = WORD("roulette", MCR_WORD_ROULETTE, 0, "Ends dim paths early without bias; on(from=3) by default."),
+    [RENDER_ROULETTE] = WORD("roulette", MCR_WORD_ROULETTE, 0, "Ends paths early without bias; on(from=8) by default."),
     [RENDER_BACKGROUND] = ROW("background", MCR_TYPE_COLOUR, 0, "W/(sr m^2)", 0, FAR, 0, 0, 0, "Radiance from where there is nothing."),
     [RENDER_ACCEL] = CHOICE("accel", "auto|list|bvh|embree", "How the closest surface is found."),
     [RENDER_PRECISION] = CHOICE("precision", "double|single", "Precision of the accelerator."),

@@ -54,8 +54,8 @@ static void defaults(void)
     ok(f->filter == MCR_FILTER_BOX && f->filter_radius == 0.5, "a box filter");
     ok(r->spp == 16 && r->depth == 50 && r->seed == 0 && r->threads == 0 && r->batch == 0 && r->replicates == 1,
        "16 spp, depth 50, seed 0");
-    ok(r->roulette && r->roulette_from == 3 && !r->mis_power && r->accel == MCR_ACCEL_AUTO && mcr_largest(r->background) == 0,
-       "roulette from 3, balance, auto, black");
+    ok(r->roulette && r->roulette_from == 8 && !r->mis_power && r->accel == MCR_ACCEL_AUTO && mcr_largest(r->background) == 0,
+       "roulette from 8, balance, auto, black");
     ok(!world.scene->has_lights && strcmp(world.scene->sampler->expression, "cosine") == 0, "without light the sampler is cosine");
     close_world(&world);
     world = open_world(CAMERA MATERIALS "sphere { center (0, 0, 5) radius 1 material lamp }\nplane { point (0, 0, 9) normal (0, 0, -1) material m }\n", NULL);
