@@ -3,9 +3,9 @@
  * One scattering event: throughput times f cos / density, then Russian roulette (Arvo and Kirk, "Particle transport and image synthesis", 1990): a path
  * goes on with a chance and is weighted up by its inverse.
  *
- * The chance is the share of light that the surface scatters, f cos over the density of the material's own sampling (for Lambert: the albedo), and
- * not the throughput: a sampler that aims at lights has low throughput just where much light is to be found, and would lose the paths that
- * matter. Where the material has no such density the path goes on.
+ * The chance is the throughput, but at least the share of light that the surface scatters, f cos over the density of the material's own sampling (for
+ * Lambert: the albedo; 1 where there is no such density). By throughput alone, a sampler that aims at lights would lose the paths that matter: they
+ * have low throughput just where much light is to be found. By the share alone, paths of high throughput would gain more than they lose, without bound.
  * Stage file, compiled once per instruction set.
  */
 #include "core/stages.h"
@@ -37,7 +37,11 @@ void MCR_ISA_NAME(mcr_stage_scatter)(struct mcr_batch *batch, uint32_t begin, ui
             double most = fr[k] > fg[k] ? fr[k] : fg[k];
             most = most > fb[k] ? most : fb[k];
             double share = most / (own[k] > 0 ? own[k] : 1.0);
-            double chance = ((own[k] > 0) & (share < 1) & (bounce[k] >= from)) ? share : 1.0;
+            double carried = r[k] > g[k] ? r[k] : g[k];
+            carried = carried > b[k] ? carried : b[k];
+            double least = own[k] > 0 ? share : 1.0;
+            double chance = carried > least ? carried : least;
+            chance = ((chance < 1) & (bounce[k] >= from)) ? chance : 1.0;
             double inverse = 1 / (chance > 0 ? chance : 1.0);
             r[k] *= inverse;
             g[k] *= inverse;
