@@ -128,7 +128,7 @@ static inline int kernel_box(const double *k, double ox, double oy, double oz, d
     double nx = ix > 0 ? x0 : x1, fx = ix > 0 ? x1 : x0;
     double ny = iy > 0 ? y0 : y1, fy = iy > 0 ? y1 : y0;
     double nz = iz > 0 ? z0 : z1, fz = iz > 0 ? z1 : z0;
-    /* A ray that runs in a side's plane makes NaN of 0 * infinity there: comparisons in this order leave the interval as it is. */
+    /* The inverses are finite, so a ray in a side's plane makes no NaN; were there one, comparisons in this order would leave the interval as it is. */
     double enter = nx > -INFINITY ? nx : -INFINITY;
     enter = ny > enter ? ny : enter;
     enter = nz > enter ? nz : enter;
