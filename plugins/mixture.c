@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
  * mixture: draws from one of its children, chosen by weight, and tells the weighted sum of their densities. Number 0 chooses;
- * the children share the numbers from 1 on, since only one of them is used. All children draw in all lanes and a select keeps
- * one: a batch has no branches. A child of weight 0 is never called.
+ * the children share the numbers from 1 on, since only one of them is used. Each child is told in which lanes it was chosen; whether
+ * it draws in the others too is its own affair: a select keeps what was chosen. A child of weight 0 is never called.
  */
 #include <mcrender/sampler.h>
 #include <stdlib.h>
@@ -109,21 +109,34 @@ static int32_t techniques(const struct mcr_host *host, struct mcr_context *conte
     return MCR_OK;
 }
 
-/* `draw` holds one child's directions, then its densities; `density` and `mass` one array. */
+/* `draw` holds one child's directions and the lanes that want it, then densities; `density` and `mass` one array. */
 static uint64_t scratch_bytes(const void *instance, uint32_t n)
 {
     (void)instance;
-    return 3 * padded(n) * sizeof(double);
+    return 4 * padded(n) * sizeof(double);
 }
 
-__attribute__((noinline)) static void select_lanes(uint32_t n, double from, const double *restrict number, const double *restrict cx, const double *restrict cy,
+static void want_lanes(uint32_t n, double from, double to, const double *restrict number, double *restrict wanted)
+{
+    for (uint32_t i = 0; i < n; i++)
+        wanted[i] = ((number[i] >= from) & (number[i] < to)) ? 1.0 : 0.0;
+}
+
+static void multiply_lanes(uint32_t n, const double *restrict factor, double *restrict value)
+{
+    for (uint32_t i = 0; i < n; i++)
+        value[i] *= factor[i];
+}
+
+__attribute__((noinline)) static void select_lanes(uint32_t n, const double *restrict wanted, const double *restrict cx, const double *restrict cy,
                          const double *restrict cz, double *restrict x, double *restrict y, double *restrict z)
 {
     for (uint32_t i = 0; i < n; i++) {
-        int chosen = number[i] >= from;
-        x[i] = chosen ? cx[i] : x[i];
-        y[i] = chosen ? cy[i] : y[i];
-        z[i] = chosen ? cz[i] : z[i];
+        int chosen = wanted[i] != 0;
+        double kx = x[i], ky = y[i], kz = z[i];
+        x[i] = chosen ? cx[i] : kx;
+        y[i] = chosen ? cy[i] : ky;
+        z[i] = chosen ? cz[i] : kz;
     }
 }
 
@@ -155,7 +168,7 @@ static int32_t density(const struct mcr_host *host, struct mcr_context *context,
     return status;
 }
 
-/* A later child overwrites an earlier one where number 0 reaches its range. The density is asked for once, at what was chosen. */
+/* Number 0 tells the child. The density is asked for once, at what was chosen. */
 static int32_t draw(const struct mcr_host *host, struct mcr_context *context, const void *instance, uint32_t technique,
                     const struct mcr_points *at, const double *const *number, const struct mcr_directions *out, double *chosen_density)
 {
@@ -163,11 +176,18 @@ static int32_t draw(const struct mcr_host *host, struct mcr_context *context, co
     double *scratch = host->scratch(host, context);
     uint64_t stride = padded(at->n);
     struct mcr_directions drawn = {sizeof drawn, at->n, scratch, scratch + stride, scratch + 2 * stride};
-    int32_t status = host->child_draw(host, context, mixture->child[0], 0, at, number + 1, out, NULL);
+    double *wanted = scratch + 3 * stride;
+    struct mcr_points some = *at;
+    int32_t status = MCR_OK;
 
-    for (uint32_t k = 1; k < mixture->count && status == MCR_OK; k++) {
-        status = host->child_draw(host, context, mixture->child[k], 0, at, number + 1, &drawn, NULL);
-        select_lanes(at->n, mixture->from[k], number[0], drawn.x, drawn.y, drawn.z, out->x, out->y, out->z);
+    some.wanted = wanted;
+    for (uint32_t k = 0; k < mixture->count && status == MCR_OK; k++) {
+        want_lanes(at->n, mixture->from[k], k + 1 < mixture->count ? mixture->from[k + 1] : 2, number[0], wanted);
+        if (at->wanted)
+            multiply_lanes(at->n, at->wanted, wanted);
+        status = host->child_draw(host, context, mixture->child[k], 0, &some, number + 1, k ? &drawn : out, NULL);
+        if (k)
+            select_lanes(at->n, wanted, drawn.x, drawn.y, drawn.z, out->x, out->y, out->z);
     }
     if (status || !chosen_density)
         return status;

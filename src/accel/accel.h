@@ -30,6 +30,7 @@ struct mcr_rays {
  *   ellipsoid      centre, rows of the inverse of the half axes
  *   box            corner, unit inward normals of the three faces through it, their distances to the opposite ones
  *   rectangle across axis 0, 1 or 2: a parallelogram whose edges are along the other two: its coordinate, and its extent along them in cyclic order
+ *   upright box    one whose edge 0, 1 or 2 runs along that axis, the others being turned about it: see kernel_upright
  */
 struct mcr_accel_shape {
     uint32_t kind;        /* enum mcr_shape_kind, or one of these */
@@ -37,6 +38,7 @@ struct mcr_accel_shape {
     double k[15];
 };
 #define MCR_ACCEL_RECTANGLE 16u /* + axis */
+#define MCR_ACCEL_UPRIGHT 20u   /* + axis */
 
 struct mcr_bvh_node {
     double lo[3], hi[3];  /* rounded outward */
@@ -47,7 +49,7 @@ struct mcr_bvh_node {
 struct mcr_accel {
     uint32_t kind;        /* MCR_ACCEL_LIST or MCR_ACCEL_BVH */
     uint32_t shape_count;
-    int rectangles;       /* there are some */
+    int inverses;         /* some shapes, rectangles or upright boxes, want the inverses of the directions */
     struct mcr_accel_shape *shape;            /* in order of their primitive numbers */
     const struct mcr_triangles *triangles;
     /* bvh only */

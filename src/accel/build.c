@@ -80,6 +80,30 @@ static void box_constants(const struct mcr_shape *shape, double *k)
     }
 }
 
+/* 1 if an edge runs along the axis of its own number. */
+static int upright_constants(const struct mcr_shape *shape, struct mcr_accel_shape *to)
+{
+    double general[15], *k = to->k;
+    int axis = 0;
+    while (axis < 3 && !(axis_of(shape->e[axis]) == axis && shape->e[(axis + 1) % 3][axis] == 0 && shape->e[(axis + 2) % 3][axis] == 0))
+        axis++;
+    if (axis == 3)
+        return 0;
+    box_constants(shape, general);
+    to->kind = MCR_ACCEL_UPRIGHT + (uint32_t)axis;
+    k[3] = shape->e[axis][axis] > 0 ? 1 : -1;
+    k[4] = shape->e[axis][axis];
+    for (int i = 0; i < 3; i++)
+        k[i] = shape->c[(axis + i) % 3];
+    for (int i = 1; i < 3; i++) {
+        int row = (axis + i) % 3;
+        for (int j = 1; j < 3; j++)
+            k[2 + 2 * i + j] = general[3 + 3 * row + (axis + j) % 3];
+        k[8 + i] = general[12 + row];
+    }
+    return 1;
+}
+
 static void shape_constants(const struct mcr_shape *shape, struct mcr_accel_shape *to)
 {
     double *k = to->k;
@@ -104,7 +128,8 @@ static void shape_constants(const struct mcr_shape *shape, struct mcr_accel_shap
         dual(shape->e[1], shape->e[0], shape->n, k + 9);
         break;
     case MCR_SHAPE_BOX:
-        box_constants(shape, k);
+        if (!upright_constants(shape, to))
+            box_constants(shape, k);
         break;
     default: /* ellipsoid: the inverse of the matrix whose columns are e[0..2] */
         dual(shape->e[0], shape->e[1], shape->e[2], k + 3);
@@ -347,7 +372,7 @@ struct mcr_accel *mcr_accel_create(struct mcr_arena *arena, const struct mcr_sce
         return NULL;
     for (uint32_t i = 0; i < scene->shape_count; i++) {
         shape_constants(&scene->shape[i], &accel->shape[i]);
-        accel->rectangles |= accel->shape[i].kind >= MCR_ACCEL_RECTANGLE;
+        accel->inverses |= accel->shape[i].kind >= MCR_ACCEL_RECTANGLE;
     }
     if (kind == MCR_ACCEL_BVH && build_tree(arena, accel, scene))
         return NULL;

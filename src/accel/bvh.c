@@ -71,7 +71,15 @@ static int item_hit(const struct mcr_accel *accel, uint32_t item, const struct r
         return kernel_rectangle(shape->k, o[2], r->inverse[2], o[0], d[0], o[1], d[1], t);
     default: {
         double face;
-        int hit = kernel_box(shape->k, o[0], o[1], o[2], d[0], d[1], d[2], &face, t);
+        int hit;
+        if (shape->kind == MCR_ACCEL_UPRIGHT)
+            hit = kernel_upright(shape->k, 0, o[0], r->inverse[0], o[1], d[1], o[2], d[2], &face, t);
+        else if (shape->kind == MCR_ACCEL_UPRIGHT + 1)
+            hit = kernel_upright(shape->k, 1, o[1], r->inverse[1], o[2], d[2], o[0], d[0], &face, t);
+        else if (shape->kind == MCR_ACCEL_UPRIGHT + 2)
+            hit = kernel_upright(shape->k, 2, o[2], r->inverse[2], o[0], d[0], o[1], d[1], &face, t);
+        else
+            hit = kernel_box(shape->k, o[0], o[1], o[2], d[0], d[1], d[2], &face, t);
         *number += (int64_t)face;
         return hit;
     }

@@ -13,7 +13,7 @@
 #include "accel/accel.h"
 
 /* t where the ray meets the plane through k[0..2] with normal k[3..5]. */
-static inline int kernel_plane(const double *k, double ox, double oy, double oz, double dx, double dy, double dz, double *at)
+static inline __attribute__((always_inline)) int kernel_plane(const double *k, double ox, double oy, double oz, double dx, double dy, double dz, double *at)
 {
     double numerator = k[3] * (k[0] - ox) + k[4] * (k[1] - oy) + k[5] * (k[2] - oz);
     double t = numerator / (k[3] * dx + k[4] * dy + k[5] * dz);
@@ -22,7 +22,7 @@ static inline int kernel_plane(const double *k, double ox, double oy, double oz,
 }
 
 /* The point's coordinates (a, b) along the two edges: dual vectors k[6..8], k[9..11]. */
-static inline int kernel_parallelogram(const double *k, double ox, double oy, double oz, double dx, double dy, double dz, double *at)
+static inline __attribute__((always_inline)) int kernel_parallelogram(const double *k, double ox, double oy, double oz, double dx, double dy, double dz, double *at)
 {
     double cx = ox - k[0], cy = oy - k[1], cz = oz - k[2];
     double t = -(k[3] * cx + k[4] * cy + k[5] * cz) / (k[3] * dx + k[4] * dy + k[5] * dz);
@@ -33,7 +33,7 @@ static inline int kernel_parallelogram(const double *k, double ox, double oy, do
     return (t > 0) & (a >= 0) & (a <= 1) & (b >= 0) & (b <= 1);
 }
 
-static inline int kernel_disk(const double *k, double ox, double oy, double oz, double dx, double dy, double dz, double *at)
+static inline __attribute__((always_inline)) int kernel_disk(const double *k, double ox, double oy, double oz, double dx, double dy, double dz, double *at)
 {
     double cx = ox - k[0], cy = oy - k[1], cz = oz - k[2];
     double t = -(k[3] * cx + k[4] * cy + k[5] * cz) / (k[3] * dx + k[4] * dy + k[5] * dz);
@@ -48,7 +48,7 @@ static inline int kernel_disk(const double *k, double ox, double oy, double oz, 
  * The nearer of two roots q and c/q that lies beyond 0. The discriminant comes from the part of o - c that is perpendicular to the ray, which
  * keeps far and small spheres exact (Haines, Günther and Akenine-Möller, "Precision improvements for ray/sphere intersection", Ray Tracing Gems, 2019).
  */
-static inline int kernel_sphere(const double *k, double ox, double oy, double oz, double dx, double dy, double dz, double *at)
+static inline __attribute__((always_inline)) int kernel_sphere(const double *k, double ox, double oy, double oz, double dx, double dy, double dz, double *at)
 {
     double fx = ox - k[0], fy = oy - k[1], fz = oz - k[2];
     double b = -(fx * dx + fy * dy + fz * dz);
@@ -66,7 +66,7 @@ static inline int kernel_sphere(const double *k, double ox, double oy, double oz
 }
 
 /* As the sphere, in the space where the ellipsoid is the unit sphere; the direction is not unit there. */
-static inline int kernel_ellipsoid(const double *k, double ox, double oy, double oz, double dx, double dy, double dz, double *at)
+static inline __attribute__((always_inline)) int kernel_ellipsoid(const double *k, double ox, double oy, double oz, double dx, double dy, double dz, double *at)
 {
     double gx = ox - k[0], gy = oy - k[1], gz = oz - k[2];
     double fx = k[3] * gx + k[4] * gy + k[5] * gz;
@@ -92,13 +92,13 @@ static inline int kernel_ellipsoid(const double *k, double ox, double oy, double
 }
 
 /*
- * The inverses of three cosines with one division, which is what the loops wait for. A ray that runs along a plane to 1e-100 counts as meeting it
- * that far away: no division by zero, and products of three stay in range.
+ * The inverses of three cosines with one division, which is what the loops wait for. A cosine below about 1e-100 counts as that much, so that nothing is
+ * divided by zero and products of three stay in range; the sum is exact from 1e-84 on.
  */
-static inline void kernel_inverse(double x, double y, double z, double inverse[3])
+static inline __attribute__((always_inline)) void kernel_inverse(double x, double y, double z, double inverse[3])
 {
     const double least = 1e-100;
-    double a = fabs(x) > least ? x : least, b = fabs(y) > least ? y : least, c = fabs(z) > least ? z : least;
+    double a = x + least, b = y + least, c = z + least;
     double bc = b * c, all = 1 / (a * bc);
     inverse[0] = all * bc;
     inverse[1] = all * (a * c);
@@ -106,7 +106,7 @@ static inline void kernel_inverse(double x, double y, double z, double inverse[3
 }
 
 /* A rectangle across an axis: at coordinate k[0] of that axis (o, inverse), from k[1] to k[2] of the next axis (p, d) and from k[3] to k[4] of the last (q, e). */
-static inline int kernel_rectangle(const double *k, double o, double inverse, double p, double d, double q, double e, double *at)
+static inline __attribute__((always_inline)) int kernel_rectangle(const double *k, double o, double inverse, double p, double d, double q, double e, double *at)
 {
     double t = (k[0] - o) * inverse;
     double a = p + t * d, b = q + t * e;
@@ -114,36 +114,68 @@ static inline int kernel_rectangle(const double *k, double o, double inverse, do
     return (t > 0) & (a >= k[1]) & (a <= k[2]) & (b >= k[3]) & (b <= k[4]);
 }
 
-/*
- * Three slabs: unit normals k[3..11] inward from the faces through the corner, which are k[12..14] away from those opposite.
- * *face: 0, 1 for the faces of axis 0 through the corner and opposite, and so on.
- */
-static inline int kernel_box(const double *k, double ox, double oy, double oz, double dx, double dy, double dz, double *face, double *at)
+/* Where a ray meets the two faces across an axis: the nearer, the farther, and the inverse of its direction's cosine to the normal inward from the first face. */
+struct mcr_slab {
+    double near, far, inverse;
+};
+
+static inline __attribute__((always_inline)) struct mcr_slab kernel_slab(double first, double opposite, double inverse)
 {
-    double cx = ox - k[0], cy = oy - k[1], cz = oz - k[2], inverse[3];
-    double x = k[3] * cx + k[4] * cy + k[5] * cz, y = k[6] * cx + k[7] * cy + k[8] * cz, z = k[9] * cx + k[10] * cy + k[11] * cz;
-    kernel_inverse(k[3] * dx + k[4] * dy + k[5] * dz, k[6] * dx + k[7] * dy + k[8] * dz, k[9] * dx + k[10] * dy + k[11] * dz, inverse);
-    double ix = inverse[0], iy = inverse[1], iz = inverse[2];
-    double x0 = -x * ix, x1 = (k[12] - x) * ix, y0 = -y * iy, y1 = (k[13] - y) * iy, z0 = -z * iz, z1 = (k[14] - z) * iz;
-    double nx = ix > 0 ? x0 : x1, fx = ix > 0 ? x1 : x0;
-    double ny = iy > 0 ? y0 : y1, fy = iy > 0 ? y1 : y0;
-    double nz = iz > 0 ? z0 : z1, fz = iz > 0 ? z1 : z0;
-    /* The inverses are finite, so a ray in a side's plane makes no NaN; were there one, comparisons in this order would leave the interval as it is. */
-    double enter = nx > -INFINITY ? nx : -INFINITY;
-    enter = ny > enter ? ny : enter;
+    struct mcr_slab s = {first < opposite ? first : opposite, first > opposite ? first : opposite, inverse};
+    return s;
+}
+
+/*
+ * What lies within three slabs, of the axes a, b and c. *face: 2 i for the face of axis i through the corner, 2 i + 1 for the opposite one. The
+ * distances are finite (kernel_inverse), so that a ray in a side's plane makes no NaN.
+ */
+static inline __attribute__((always_inline)) int kernel_slabs(struct mcr_slab x, struct mcr_slab y, struct mcr_slab z, double a, double b, double c, double *face, double *at)
+{
+    double ix = x.inverse, iy = y.inverse, iz = z.inverse, nx = x.near, ny = y.near, nz = z.near, fx = x.far, fy = y.far, fz = z.far;
+    double enter = ny > nx ? ny : nx;
     enter = nz > enter ? nz : enter;
-    double leave = fx < INFINITY ? fx : INFINITY;
-    leave = fy < leave ? fy : leave;
+    double leave = fy < fx ? fy : fx;
     leave = fz < leave ? fz : leave;
     int outside = enter > 0;
     double t = outside ? enter : leave;
     /* A ray that enters along a positive direction meets the face through the corner; one that leaves along it, the opposite one. */
-    double sign = outside ? 1.0 : -1.0;
-    double by_x = ix * sign > 0 ? 0 : 1, by_y = iy * sign > 0 ? 2 : 3, by_z = iz * sign > 0 ? 4 : 5;
     double tx = outside ? nx : fx, ty = outside ? ny : fy;
-    *face = t == tx ? by_x : t == ty ? by_y : by_z;
+    int by_x = t == tx, by_y = t == ty;
+    double along = by_y ? iy : iz, first = by_y ? 2 * b : 2 * c;
+    along = by_x ? ix : along;
+    first = by_x ? 2 * a : first;
+    along = outside ? along : -along;
+    *face = along > 0 ? first : first + 1;
     *at = t;
     return (enter <= leave) & (t > 0);
+}
+
+/* Unit normals k[3..11] inward from the faces through the corner, which are k[12..14] away from those opposite. */
+static inline __attribute__((always_inline)) int kernel_box(const double *k, double ox, double oy, double oz, double dx, double dy, double dz, double *face, double *at)
+{
+    double cx = ox - k[0], cy = oy - k[1], cz = oz - k[2], inverse[3];
+    double x = k[3] * cx + k[4] * cy + k[5] * cz, y = k[6] * cx + k[7] * cy + k[8] * cz, z = k[9] * cx + k[10] * cy + k[11] * cz;
+    kernel_inverse(k[3] * dx + k[4] * dy + k[5] * dz, k[6] * dx + k[7] * dy + k[8] * dz, k[9] * dx + k[10] * dy + k[11] * dz, inverse);
+    struct mcr_slab sx = kernel_slab(-x * inverse[0], (k[12] - x) * inverse[0], inverse[0]);
+    struct mcr_slab sy = kernel_slab(-y * inverse[1], (k[13] - y) * inverse[1], inverse[1]);
+    struct mcr_slab sz = kernel_slab(-z * inverse[2], (k[14] - z) * inverse[2], inverse[2]);
+    return kernel_slabs(sx, sy, sz, 0, 1, 2, face, at);
+}
+
+/*
+ * A box of which one axis, `axis`, is the world's (o, inverse); p, d and q, e are along the world's next and last one in cyclic order.
+ * k[0..2]: the corner in the order o, p, q; k[3]: 1, or -1 where the edge runs against the axis; k[4]: the coordinate of the opposite face less
+ * the corner's; k[5..6] and k[7..8]: the normals of the next and the last axis in (p, q); k[9..10]: their distances.
+ */
+static inline __attribute__((always_inline)) int kernel_upright(const double *k, int axis, double o, double inverse, double p, double d, double q, double e, double *face, double *at)
+{
+    const double least = 1e-100; /* as in kernel_inverse */
+    double co = o - k[0], cp = p - k[1], cq = q - k[2];
+    double x = k[5] * cp + k[6] * cq, y = k[7] * cp + k[8] * cq;
+    double a = k[5] * d + k[6] * e + least, b = k[7] * d + k[8] * e + least, all = 1 / (a * b), ia = all * b, ib = all * a;
+    struct mcr_slab own = kernel_slab(-co * inverse, (k[4] - co) * inverse, inverse * k[3]);
+    struct mcr_slab next = kernel_slab(-x * ia, (k[9] - x) * ia, ia), last = kernel_slab(-y * ib, (k[10] - y) * ib, ib);
+    return kernel_slabs(own, next, last, axis, (axis + 1) % 3, (axis + 2) % 3, face, at);
 }
 
 /*
@@ -155,7 +187,7 @@ struct mcr_shear {
 };
 
 /* Woop, Benthin and Wald, "Watertight ray/triangle intersection", JCGT 2(1), 2013: the same shear and axes, written as linear forms. */
-static inline struct mcr_shear kernel_shear(double dx, double dy, double dz)
+static inline __attribute__((always_inline)) struct mcr_shear kernel_shear(double dx, double dy, double dz)
 {
     double ax = fabs(dx), ay = fabs(dy), az = fabs(dz);
     int by_z = (az >= ax) & (az >= ay);
@@ -183,7 +215,7 @@ static inline struct mcr_shear kernel_shear(double dx, double dy, double dz)
  * Watertight: an edge that two triangles share gives both the same edge function with opposite sign, to the bit (no contraction), and 0 counts
  * as inside for both. a, b, c are the vertices.
  */
-static inline int kernel_triangle(const struct mcr_shear *s, double ax, double ay, double az, double bx, double by, double bz, double cx,
+static inline __attribute__((always_inline)) int kernel_triangle(const struct mcr_shear *s, double ax, double ay, double az, double bx, double by, double bz, double cx,
                                      double cy, double cz, double ox, double oy, double oz, double *at)
 {
     ax -= ox, ay -= oy, az -= oz, bx -= ox, by -= oy, bz -= oz, cx -= ox, cy -= oy, cz -= oz;

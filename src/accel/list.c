@@ -9,7 +9,7 @@
  */
 struct block {
     const double *ox, *oy, *oz, *dx, *dy, *dz;
-    _Alignas(64) double inverse[3][MCR_ACCEL_BLOCK]; /* of the directions, where there are rectangles */
+    _Alignas(64) double inverse[3][MCR_ACCEL_BLOCK]; /* of the directions, where a shape wants them */
     _Alignas(64) double t[MCR_ACCEL_BLOCK];
     _Alignas(64) double primitive[MCR_ACCEL_BLOCK]; /* a whole number: as such it takes part in the same selects as t on plain SSE2 */
 };
@@ -34,6 +34,17 @@ struct block {
             double t, was = b->primitive[i], best = b->t[i];                                                                            \
             int nearer = kernel_rectangle(k, b->O[i], b->inverse[AXIS][i], b->P[i], b->D[i], b->Q[i], b->E[i], &t) & (t < best);        \
             b->primitive[i] = nearer ? number : was;                                                                                    \
+            b->t[i] = nearer ? t : best;                                                                                                \
+        }                                                                                                                               \
+    } while (0)
+
+#define UPRIGHT(AXIS, O, P, D, Q, E)                                                                                                    \
+    do {                                                                                                                                \
+        MCR_LANES                                                                                                                       \
+        for (uint32_t i = 0; i < MCR_ACCEL_BLOCK; i++) {                                                                                \
+            double t, face, was = b->primitive[i], best = b->t[i];                                                                      \
+            int nearer = kernel_upright(k, AXIS, b->O[i], b->inverse[AXIS][i], b->P[i], b->D[i], b->Q[i], b->E[i], &face, &t) & (t < best); \
+            b->primitive[i] = nearer ? number + face : was;                                                                             \
             b->t[i] = nearer ? t : best;                                                                                                \
         }                                                                                                                               \
     } while (0)
@@ -68,6 +79,15 @@ static inline __attribute__((always_inline)) void block_shape(const struct mcr_a
         break;
     case MCR_ACCEL_RECTANGLE + 2:
         RECTANGLE(2, oz, ox, dx, oy, dy);
+        break;
+    case MCR_ACCEL_UPRIGHT:
+        UPRIGHT(0, ox, oy, dy, oz, dz);
+        break;
+    case MCR_ACCEL_UPRIGHT + 1:
+        UPRIGHT(1, oy, oz, dz, ox, dx);
+        break;
+    case MCR_ACCEL_UPRIGHT + 2:
+        UPRIGHT(2, oz, ox, dx, oy, dy);
         break;
     default:
         MCR_LANES
@@ -118,8 +138,9 @@ static void block_run(const struct mcr_accel *accel, const struct mcr_rays *rays
 {
     _Alignas(64) double copy[6][MCR_ACCEL_BLOCK];
     uint32_t count = rays->n - first < MCR_ACCEL_BLOCK ? rays->n - first : MCR_ACCEL_BLOCK;
-    struct block b = {.ox = rays->ox + first, .oy = rays->oy + first, .oz = rays->oz + first,
-                      .dx = rays->dx + first, .dy = rays->dy + first, .dz = rays->dz + first};
+    struct block b; /* no initializer: it would clear the arrays */
+    b.ox = rays->ox + first, b.oy = rays->oy + first, b.oz = rays->oz + first;
+    b.dx = rays->dx + first, b.dy = rays->dy + first, b.dz = rays->dz + first;
     if (count < MCR_ACCEL_BLOCK) {
         const double *from[6] = {b.ox, b.oy, b.oz, b.dx, b.dy, b.dz};
         for (int j = 0; j < 6; j++)
@@ -133,7 +154,7 @@ static void block_run(const struct mcr_accel *accel, const struct mcr_rays *rays
     }
     for (uint32_t i = 0; far && i < count; i++)
         b.t[i] = far[first + i];
-    if (accel->rectangles) {
+    if (accel->inverses) {
         MCR_LANES
         for (uint32_t i = 0; i < MCR_ACCEL_BLOCK; i++) {
             double inverse[3];
@@ -147,6 +168,7 @@ static void block_run(const struct mcr_accel *accel, const struct mcr_rays *rays
         block_shape(&accel->shape[s], &b);
     if (accel->triangles->count)
         block_triangles(accel->triangles, &b);
+    MCR_LANES
     for (uint32_t i = 0; i < count; i++) {
         t[first + i] = b.t[i];
         primitive[first + i] = (int64_t)b.primitive[i];

@@ -78,8 +78,8 @@ static void cut_all(struct cutter *c, struct mcr_batch *b)
     at->primitive = cut(c, b->lanes, sizeof *at->primitive);
     b->order = cut(c, b->lanes, sizeof *b->order);
     b->range = cut(c, 2 * (size_t)groups, sizeof *b->range);
-    b->zone_count = cut(c, 2 * (size_t)groups + 1, sizeof *b->zone_count);
-    b->zone_list = cut(c, (2 * (size_t)groups + 1) * rays, sizeof *b->zone_list);
+    b->zone_count = cut(c, 3 * (size_t)groups + 1, sizeof *b->zone_count);
+    b->zone_list = cut(c, (3 * (size_t)groups + 1) * rays, sizeof *b->zone_list);
     for (uint32_t k = 0; k < MCR_NUMBERS_MAX; k++)
         b->number[k] = cut(c, b->lanes, sizeof(double));
     b->material_density = cut(c, b->lanes, sizeof(double));

@@ -101,6 +101,7 @@ struct mcr_surface_points {
 /* A stretch of points of one group. */
 struct mcr_range {
     uint32_t group, begin, end;     /* points begin .. end-1; begin is a multiple of MCR_LANE_PAD */
+    uint32_t roulette;              /* a multiple of it: points before this are safe from roulette; only some behind it need not be */
     int ends;                       /* these paths emit and end */
 };
 
@@ -145,7 +146,7 @@ struct mcr_batch {
     uint32_t range_count;
     const uint32_t *miss;           /* rays that hit nothing */
     uint32_t miss_count;
-    uint32_t *zone_count;           /* 2 * groups + 1: those that scatter, those that end, misses */
+    uint32_t *zone_count;           /* 3 * groups + 1: see sort.c */
     uint32_t *zone_list;            /* the rays of each, room for all of them */
     double *number[MCR_NUMBERS_MAX], *roulette;
     double *wx, *wy, *wz, *density; /* drawn directions */
@@ -185,10 +186,23 @@ struct mcr_camera_lanes {
     double *ox, *oy, *oz, *dx, *dy, *dz;
 };
 
+/* New camera paths: the samples of a job in order, cell after cell (pass.h). */
+struct mcr_begin {
+    uint32_t n, to;                 /* states to .. to+n-1, whose rays are the batch's next */
+    uint32_t path, slot;            /* the first path's number within the job, and its slot */
+    uint32_t cell_samples;
+    uint64_t pixel, round;          /* the job's first cell: c % pixels and c / pixels */
+    uint64_t pixels;                /* of the crop */
+    uint32_t first;                 /* the number of the pass's first sample within the replicate */
+    uint32_t planned;
+    uint64_t replicate_key;
+};
+
 /* The stage functions, compiled once per instruction set. */
 struct mcr_stages {
+    /* States of new paths, their pixels (camera_x, camera_y) and their places among the rays. */
+    void (*begin)(struct mcr_batch *batch, const struct mcr_begin *begin);
     void (*camera)(const struct mcr_scene *scene, const struct mcr_camera_lanes *lanes);
-    void (*path_keys)(uint32_t n, const uint64_t *pixel_key, const uint32_t *index, uint64_t *path_key);
     /* Groups rays by what they hit: fills order, range, miss. */
     void (*sort)(struct mcr_batch *batch);
     /* Points and path states in sorted order. */
@@ -197,10 +211,12 @@ struct mcr_stages {
     void (*emit)(struct mcr_batch *batch, uint32_t begin, uint32_t end);
     /* Adds the background to the slots of the rays that hit nothing. */
     void (*background)(struct mcr_batch *batch);
-    /* Throughput times f cos / density, and roulette with `u` (NULL: none); fills alive. */
-    void (*scatter)(struct mcr_batch *batch, uint32_t begin, uint32_t end, const double *u);
+    /* Throughput times f cos / density, and roulette; fills alive. */
+    void (*scatter)(struct mcr_batch *batch, const struct mcr_range *range);
     /* Makes rays of the living points and lists their lanes in `source`. */
     void (*compact)(struct mcr_batch *batch);
+    /* out[i] = table[index[i]] */
+    void (*gather)(uint32_t n, const uint32_t *index, const double *table, double *out);
 };
 
 extern const struct mcr_stages mcr_stages_isa0, mcr_stages_isa1, mcr_stages_isa2;

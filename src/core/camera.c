@@ -118,9 +118,52 @@ void MCR_ISA_NAME(mcr_stage_camera)(const struct mcr_scene *scene, const struct 
     }
 }
 
-void MCR_ISA_NAME(mcr_stage_path_keys)(uint32_t n, const uint64_t *pixel_key, const uint32_t *index, uint64_t *path_key)
+/*
+ * Which pixel and sample each path is for. Quotients are taken in doubles, where they vectorise: x + 1/2 over d is off a whole number by 1/(2d) at
+ * least, far more than rounding for x and d below 2^32.
+ */
+static void identities(const struct mcr_film_settings *film, const struct mcr_begin *b, double *restrict x, double *restrict y,
+                       uint64_t *restrict key, uint32_t *restrict index)
 {
+    const double width = film->x1 - film->x0, samples = b->cell_samples, pixels = (double)b->pixels, pixel0 = (double)b->pixel;
+    const double per_width = 1 / width, per_samples = 1 / samples, per_pixels = 1 / pixels;
+    const uint32_t x0 = film->x0, y0 = film->y0, full = film->width, path = b->path, n = b->n;
+    const uint32_t start = b->first + (uint32_t)b->round * b->cell_samples;
+    const uint64_t replicate_key = b->replicate_key;
+    MCR_LANES
+    for (uint32_t i = 0; i < n; i++) {
+        double number = (int32_t)(path + i), cell = (int32_t)((number + 0.5) * per_samples), sample = number - cell * samples;
+        double round = (int32_t)((pixel0 + cell + 0.5) * per_pixels), pixel = pixel0 + cell - round * pixels;
+        double row = (int32_t)((pixel + 0.5) * per_width), column = pixel - row * width;
+        uint32_t px = x0 + (uint32_t)(int32_t)column, py = y0 + (uint32_t)(int32_t)row;
+        x[i] = (int32_t)px;
+        y[i] = (int32_t)py;
+        key[i] = mcr_pixel_key(replicate_key, (uint64_t)py * full + px);
+        index[i] = start + (uint32_t)(int32_t)(round * samples + sample);
+    }
+}
+
+void MCR_ISA_NAME(mcr_stage_begin)(struct mcr_batch *batch, const struct mcr_begin *b)
+{
+    const struct mcr_paths *paths = &batch->state;
+    const uint32_t n = b->n, to = b->to, slot = b->slot, planned = b->planned;
+    uint32_t *slots = paths->slot + to, *bounces = paths->bounce + to, *plans = paths->planned + to, *source = batch->source + batch->rays;
+    double *red = paths->r + to, *green = paths->g + to, *blue = paths->b + to;
+    const uint64_t *pixel_key = paths->pixel_key + to;
+    const uint32_t *index = paths->index + to;
+    uint64_t *path_key = paths->path_key + to;
+    identities(&batch->core->scene->film, b, batch->camera_x, batch->camera_y, paths->pixel_key + to, paths->index + to);
     MCR_LANES
     for (uint32_t i = 0; i < n; i++)
         path_key[i] = mcr_path_key(pixel_key[i], index[i]);
+    MCR_LANES
+    for (uint32_t i = 0; i < n; i++) {
+        plans[i] = planned;
+        slots[i] = slot + i;
+        bounces[i] = 0;
+        source[i] = to + i;
+    }
+    MCR_LANES
+    for (uint32_t i = 0; i < n; i++)
+        red[i] = green[i] = blue[i] = 1;
 }

@@ -85,6 +85,8 @@ struct mcr_emitter_scratch {
     int64_t chosen[MCR_EMITTER_BLOCK];    /* emitter, -1: none */
     int32_t list[MCR_EMITTER_BLOCK];
     struct mcr_emitter_pack pack, second; /* second: those of the pack that fall back to area */
+    struct mcr_emitter_pack wanted;       /* lanes that the caller wants, where it does not want all */
+    mcr_emitter_row number;               /* theirs that choose the emitter */
     struct mcr_solid_scratch solid;
     struct mcr_emitter_walk walk;
 };

@@ -330,21 +330,12 @@ static void draw_block(const struct mcr_emitters *all, uint32_t by, int alone, c
 
 /* ---- densities of directions --------------------------------------------------------------------------------------- */
 
-/*
- * Adds to `sum` the densities of emitter e, times its probability, where the rays cross it. Lanes that chose it are left out (chosen may be
- * NULL).
- */
-static void add_emitter(const struct mcr_emitters *all, uint32_t e, uint32_t by, const struct mcr_emitter_lanes *block,
-                        const int64_t *chosen, double *restrict sum, struct mcr_emitter_scratch *s)
+/* Adds to `sum` the densities of emitter e, times its probability, in the lanes that are flagged: their rays cross it. */
+static void add_flagged(const struct mcr_emitters *all, uint32_t e, uint32_t by, const struct mcr_emitter_lanes *block, double *restrict sum,
+                        struct mcr_emitter_scratch *s)
 {
-    double *restrict flag = s->flag, probability = all->emitter[e].probability;
-    CROSS(all, e, block, flag);
-    if (chosen) {
-        MCR_LANES
-        for (uint32_t i = 0; i < block->n; i++)
-            flag[i] = chosen[i] == (int64_t)e ? 0 : flag[i];
-    }
-    uint32_t count = list_flagged(block->n, flag, s->list);
+    const double probability = all->emitter[e].probability;
+    uint32_t count = list_flagged(block->n, s->flag, s->list);
     if (count == 0)
         return;
     struct mcr_emitter_pack *pack = &s->second;
@@ -355,6 +346,20 @@ static void add_emitter(const struct mcr_emitters *all, uint32_t e, uint32_t by,
     DENSITY(all, all->emitter[e].kind, by, 0, &lanes, all->k[e], 0, &s->solid);
     for (uint32_t j = 0; j < count; j++)
         sum[s->list[j]] += probability * pack->density[j];
+}
+
+/* The same in the lanes whose rays cross it, but for those that chose it (chosen may be NULL). */
+static void add_emitter(const struct mcr_emitters *all, uint32_t e, uint32_t by, const struct mcr_emitter_lanes *block,
+                        const int64_t *chosen, double *sum, struct mcr_emitter_scratch *s)
+{
+    double *restrict flag = s->flag;
+    CROSS(all, e, block, flag);
+    if (chosen) {
+        MCR_LANES
+        for (uint32_t i = 0; i < block->n; i++)
+            flag[i] = chosen[i] == (int64_t)e ? 0 : flag[i];
+    }
+    add_flagged(all, e, by, block, sum, s);
 }
 
 static void invert(uint32_t n, const double *restrict from, double *restrict to)
@@ -472,25 +477,21 @@ static int keeps(const struct mcr_emitters *all, uint32_t by)
            (all->emitter[0].kind == MCR_EMITTER_PARALLELOGRAM || all->emitter[0].kind == MCR_EMITTER_TRIANGLE);
 }
 
+/* kept: NOT_STEADY where the density must be found, because it is by area or nothing was drawn in that lane. */
 static void kept_density(const struct mcr_emitters *all, uint32_t by, const struct mcr_emitter_lanes *block, const double *restrict kept,
                          double *restrict out, struct mcr_emitter_scratch *s)
 {
     const uint32_t n = block->n;
     double *restrict flag = s->flag;
-    uint32_t falling = 0;
     CROSS(all, 0, block, flag);
     MCR_LANES
-    for (uint32_t i = 0; i < n; i++)
-        out[i] = flag[i] != 0 ? kept[i] : 0;
-    for (uint32_t i = 0; i < n; i++)
-        falling += out[i] < 0;
-    if (falling > 0) {
-        for (uint32_t i = 0; i < n; i++)
-            out[i] = 0;
-        add_emitter(all, 0, by, block, NULL, out, s);
-        for (uint32_t i = 0; i < n; i++)
-            out[i] = flag[i] != 0 && kept[i] >= 0 ? kept[i] : out[i];
+    for (uint32_t i = 0; i < n; i++) {
+        double known = kept[i], crossed = flag[i];
+        int lost = known < 0;
+        out[i] = lost ? 0 : crossed * known;
+        flag[i] = lost ? crossed : 0;
     }
+    add_flagged(all, 0, by, block, out, s);
 }
 
 static void density(const struct mcr_emitters *all, void *scratch, uint32_t by, const struct mcr_points *at,
@@ -529,17 +530,74 @@ static void complete(const struct mcr_emitters *all, uint32_t by, const struct m
         scale(n, s->total, out);
 }
 
+/* The wanted lanes from `from` on, as many as fit into a block; returns where the next block begins. */
+static uint32_t gather_wanted(const struct mcr_points *at, const double *const *number, uint32_t from, struct mcr_emitter_scratch *s,
+                              struct mcr_emitter_lanes *block)
+{
+    struct mcr_emitter_pack *pack = &s->wanted;
+    const struct mcr_emitter_lanes all = {.n = at->n, .px = at->px, .py = at->py, .pz = at->pz, .u = number[1], .v = number[2]};
+    const double *restrict wanted = at->wanted; /* 0 or anything */
+    int32_t *restrict list = pack->lane;
+    uint32_t count = 0, i = from;
+    for (; i < at->n && count < MCR_EMITTER_BLOCK; i++) {
+        list[count] = (int32_t)i;
+        count += wanted[i] != 0;
+    }
+    *block = pack_lanes(pack, count);
+    if (count == 0)
+        return i;
+    uint32_t padded = pad_list(count, list);
+    gather_points(&all, padded, list, pack);
+    gather_numbers(&all, padded, list, pack);
+    gather(padded, list, number[0], s->number);
+    return i;
+}
+
+/* Draws in some lanes alone. The others' kept densities stay to be found. */
+static void draw_wanted(const struct mcr_emitters *all, struct mcr_emitter_scratch *s, uint32_t by, const struct mcr_points *at,
+                        const double *const *number, const struct mcr_directions *out, double *out_density, double *kept)
+{
+    struct mcr_emitter_pack *pack = &s->wanted;
+    struct mcr_emitter_lanes block;
+    for (uint32_t i = 0; kept && i < at->n; i++)
+        kept[i] = NOT_STEADY;
+    for (uint32_t next = 0; next < at->n;) {
+        next = gather_wanted(at, number, next, s, &block);
+        uint32_t count = block.n;
+        if (count == 0)
+            continue;
+        block.n = (count + MCR_LANE_PAD - 1) / MCR_LANE_PAD * MCR_LANE_PAD;
+        draw_block(all, by, 0, &block, s->number, kept ? s->number : NULL, s);
+        if (kept)
+            scatter(count, pack->lane, s->number, kept);
+        if (out_density && all->count > 1) {
+            complete(all, by, &block, s->number, s);
+            scatter(count, pack->lane, s->number, out_density);
+        } else if (out_density) {
+            scatter(count, pack->lane, pack->density, out_density);
+        }
+        scatter(count, pack->lane, pack->wx, out->x);
+        scatter(count, pack->lane, pack->wy, out->y);
+        scatter(count, pack->lane, pack->wz, out->z);
+    }
+}
+
 static void draw(const struct mcr_emitters *all, void *scratch, uint32_t by, const struct mcr_points *at, const double *const *number,
                  const struct mcr_directions *out, double *out_density, double *kept)
 {
     struct mcr_emitter_scratch *s = scratch;
+    double *keep = kept && keeps(all, by) ? kept : NULL;
+    if (at->size >= sizeof *at && at->wanted) {
+        draw_wanted(all, s, by, at, number, out, out_density, keep);
+        return;
+    }
     for (uint32_t base = 0; base < at->n; base += MCR_EMITTER_BLOCK) {
         struct mcr_emitter_lanes block = block_points(at, base);
         block.u = number[1] + base, block.v = number[2] + base;
         block.wx = out->x + base, block.wy = out->y + base, block.wz = out->z + base;
         block.density = out_density && all->count <= 1 ? out_density + base : s->density;
         block.distance = s->distance;
-        draw_block(all, by, 0, &block, number[0] + base, kept && keeps(all, by) ? kept + base : NULL, s);
+        draw_block(all, by, 0, &block, number[0] + base, keep ? keep + base : NULL, s);
         if (out_density && all->count > 1)
             complete(all, by, &block, out_density + base, s);
     }

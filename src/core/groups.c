@@ -80,10 +80,7 @@ struct mcr_inputs mcr_group_inputs(struct mcr_batch *batch, const struct mcr_gro
             continue;
         }
         double *lane = batch->lane_input + (size_t)c * batch->lanes;
-        const double *table = group->table[c];
-        MCR_LANES
-        for (uint32_t k = begin; k < end; k++)
-            lane[k] = table[material[k]];
+        batch->core->stages->gather(end - begin, material + begin, group->table[c], lane + begin);
         batch->channel[c] = lane + begin;
         batch->stride[c] = 1;
     }
@@ -220,10 +217,10 @@ int mcr_surfaces_init(struct mcr_core *core, struct mcr_arena *arena)
     }
     set_triangles(s, &scene->triangles);
     s->smooth = scene->triangles.normal != NULL;
-    s->zone[0] = 2 * core->group_count;
+    s->zone[0] = 3 * core->group_count;
     for (uint32_t p = 0; p < s->count; p++) {
         uint32_t g = core->group_of_material[s->material[p]];
-        s->zone[p + 1] = core->group[g].scatters ? g : core->group_count + g;
+        s->zone[p + 1] = core->group[g].scatters ? g : 2 * core->group_count + g;
     }
     return 0;
 }

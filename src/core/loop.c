@@ -109,41 +109,6 @@ static void finish_jobs(struct mcr_batch *batch, struct mcr_pass *pass)
 
 /* ---- Camera ---------------------------------------------------------------------------------------------------- */
 
-/* States for the next n paths of a job, from lane `to` on: cell by cell, so that only whole cells cost a division. */
-static void begin_paths(struct mcr_batch *batch, const struct mcr_pass *pass, struct mcr_job *job, uint32_t to, uint32_t n)
-{
-    const struct mcr_film_settings *film = &batch->core->scene->film;
-    const struct mcr_paths *paths = &batch->state;
-    const uint32_t width = film->x1 - film->x0, place = (uint32_t)(job - batch->job) * MCR_JOB_SLOTS;
-    for (uint32_t i = 0; i < n;) {
-        uint32_t path = job->begun + i, sample = path % pass->cell_samples, left = pass->cell_samples - sample;
-        uint32_t end = i + (left < n - i ? left : n - i);
-        uint64_t cell = job->first_cell + path / pass->cell_samples, pixel = cell % pass->pixels;
-        uint32_t x = film->x0 + (uint32_t)(pixel % width), y = film->y0 + (uint32_t)(pixel / width);
-        uint64_t key = mcr_pixel_key(pass->replicate_key, (uint64_t)y * film->width + x);
-        uint64_t first = pass->first + cell / pass->pixels * pass->cell_samples + sample - i;
-        MCR_LANES
-        for (uint32_t j = i; j < end; j++) {
-            batch->camera_x[j] = x;
-            batch->camera_y[j] = y;
-            paths->pixel_key[to + j] = key;
-            paths->index[to + j] = (uint32_t)first + j;
-        }
-        i = end;
-    }
-    MCR_LANES
-    for (uint32_t i = 0; i < n; i++) {
-        paths->planned[to + i] = pass->planned;
-        paths->slot[to + i] = place + job->begun + i;
-        paths->bounce[to + i] = 0;
-        batch->source[batch->rays + i] = to + i;
-    }
-    MCR_LANES
-    for (uint32_t i = 0; i < n; i++)
-        paths->r[to + i] = paths->g[to + i] = paths->b[to + i] = 1;
-    job->begun += n;
-}
-
 static int32_t camera(struct mcr_batch *batch, struct mcr_pass *pass)
 {
     struct mcr_core *core = batch->core;
@@ -152,8 +117,19 @@ static int32_t camera(struct mcr_batch *batch, struct mcr_pass *pass)
     while (batch->rays < core->capacity && (job = open_job(batch, pass))) {
         uint32_t room = core->capacity - batch->rays, to = batch->states, n = job->paths - job->begun < room ? job->paths - job->begun : room;
         int lens = core->scene->camera.kind == MCR_CAMERA_THIN_LENS && core->scene->camera.lens_radius > 0;
-        begin_paths(batch, pass, job, to, n);
-        core->stages->path_keys(n, paths->pixel_key + to, paths->index + to, paths->path_key + to);
+        struct mcr_begin begin = {.n = n,
+                                  .to = to,
+                                  .path = job->begun,
+                                  .slot = (uint32_t)(job - batch->job) * MCR_JOB_SLOTS + job->begun,
+                                  .cell_samples = pass->cell_samples,
+                                  .pixel = job->first_cell % pass->pixels,
+                                  .round = job->first_cell / pass->pixels,
+                                  .pixels = pass->pixels,
+                                  .first = (uint32_t)pass->first,
+                                  .planned = pass->planned,
+                                  .replicate_key = pass->replicate_key};
+        core->stages->begin(batch, &begin);
+        job->begun += n;
         int32_t status = mcr_numbers(batch, paths, to, to + n, 0, 2, batch->number);
         if (!status && lens)
             status = mcr_numbers(batch, paths, to, to + n, MCR_DIMENSION_LENS, 2, batch->number + 2);
@@ -207,6 +183,20 @@ static int32_t emission(struct mcr_batch *batch)
     return MCR_OK;
 }
 
+/* What roulette asks for, for those points of the range that it may end. */
+static int32_t roulette(struct mcr_batch *batch, const struct mcr_range *range)
+{
+    const struct mcr_range part = {.group = range->group, .begin = range->roulette, .end = range->end};
+    const uint32_t b = part.begin;
+    struct mcr_directions toward = {sizeof toward, part.end - b, batch->wx + b, batch->wy + b, batch->wz + b};
+    double *number = batch->roulette + b;
+    int32_t status;
+    TIMED(MCR_STAGE_MATERIAL, status = mcr_group_density(batch, &part, &toward, batch->material_density + b));
+    if (!status)
+        TIMED(MCR_STAGE_NUMBERS, status = mcr_numbers(batch, &batch->sorted, b, part.end, MCR_DIMENSION_ROULETTE, 1, &number));
+    return status;
+}
+
 /* The points of one group: directions, f cos, throughput. */
 static int32_t scatter_range(struct mcr_batch *batch, const struct mcr_range *range)
 {
@@ -216,7 +206,7 @@ static int32_t scatter_range(struct mcr_batch *batch, const struct mcr_range *ra
     struct mcr_points at = mcr_batch_points(batch, b, range->end);
     struct mcr_directions toward = {sizeof toward, n, batch->wx + b, batch->wy + b, batch->wz + b};
     struct mcr_colours out = colours(batch, b, range->end);
-    double *number[MCR_NUMBERS_MAX], *roulette = batch->roulette + b;
+    double *number[MCR_NUMBERS_MAX];
     int32_t status;
     uint32_t first = 0;
     for (uint32_t k = 0; k < MCR_NUMBERS_MAX; k++)
@@ -233,14 +223,12 @@ static int32_t scatter_range(struct mcr_batch *batch, const struct mcr_range *ra
         TIMED(MCR_STAGE_LIGHT, status = mcr_light_lookups(batch, range, &at, number));
     if (!status)
         TIMED(MCR_STAGE_MATERIAL, status = mcr_group_evaluate(batch, range, &toward, &out));
-    if (!status && core->scene->render.roulette)
-        TIMED(MCR_STAGE_MATERIAL, status = mcr_group_density(batch, range, &toward, batch->material_density + b));
-    if (!status && core->scene->render.roulette)
-        TIMED(MCR_STAGE_NUMBERS, status = mcr_numbers(batch, &batch->sorted, b, range->end, MCR_DIMENSION_ROULETTE, 1, &roulette));
+    if (!status && range->roulette < range->end)
+        status = roulette(batch, range);
     batch->running = NULL;
     if (status)
         return status;
-    TIMED(MCR_STAGE_SCATTER, core->stages->scatter(batch, b, range->end, core->scene->render.roulette ? batch->roulette : NULL));
+    TIMED(MCR_STAGE_SCATTER, core->stages->scatter(batch, range));
     batch->scatterings += n;
     return MCR_OK;
 }

@@ -10,8 +10,9 @@
  */
 #include "core/stages.h"
 
-void MCR_ISA_NAME(mcr_stage_scatter)(struct mcr_batch *batch, uint32_t begin, uint32_t end, const double *u)
+void MCR_ISA_NAME(mcr_stage_scatter)(struct mcr_batch *batch, const struct mcr_range *range)
 {
+    const uint32_t begin = range->begin, end = range->end, roulette = range->roulette;
     const struct mcr_paths *paths = &batch->sorted;
     double *r = paths->r, *g = paths->g, *b = paths->b, *alive = batch->alive;
     const double *fr = batch->fr, *fg = batch->fg, *fb = batch->fb, *density = batch->density;
@@ -28,12 +29,13 @@ void MCR_ISA_NAME(mcr_stage_scatter)(struct mcr_batch *batch, uint32_t begin, ui
         /* NaN lives on, so that it reaches the film and is told. */
         alive[k] = (drawn & !(most <= 0)) ? 1.0 : 0.0;
     }
-    if (u) {
+    if (roulette < end) {
         const uint32_t *bounce = paths->bounce;
+        const double *u = batch->roulette;
         const double *own = batch->material_density;
         const uint32_t from = batch->core->scene->render.roulette_from;
         MCR_LANES
-        for (uint32_t k = begin; k < end; k++) {
+        for (uint32_t k = roulette; k < end; k++) {
             double most = fr[k] > fg[k] ? fr[k] : fg[k];
             most = most > fb[k] ? most : fb[k];
             double share = most / (own[k] > 0 ? own[k] : 1.0);

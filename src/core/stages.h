@@ -6,12 +6,13 @@
 #include "core/batch.h"
 
 void MCR_ISA_NAME(mcr_stage_camera)(const struct mcr_scene *scene, const struct mcr_camera_lanes *lanes);
-void MCR_ISA_NAME(mcr_stage_path_keys)(uint32_t n, const uint64_t *pixel_key, const uint32_t *index, uint64_t *path_key);
+void MCR_ISA_NAME(mcr_stage_begin)(struct mcr_batch *batch, const struct mcr_begin *begin);
 void MCR_ISA_NAME(mcr_stage_sort)(struct mcr_batch *batch);
 void MCR_ISA_NAME(mcr_stage_surface)(struct mcr_batch *batch);
 void MCR_ISA_NAME(mcr_stage_emit)(struct mcr_batch *batch, uint32_t begin, uint32_t end);
 void MCR_ISA_NAME(mcr_stage_background)(struct mcr_batch *batch);
-void MCR_ISA_NAME(mcr_stage_scatter)(struct mcr_batch *batch, uint32_t begin, uint32_t end, const double *u);
+void MCR_ISA_NAME(mcr_stage_scatter)(struct mcr_batch *batch, const struct mcr_range *range);
 void MCR_ISA_NAME(mcr_stage_compact)(struct mcr_batch *batch);
+void MCR_ISA_NAME(mcr_stage_gather)(uint32_t n, const uint32_t *index, const double *table, double *out);
 
 #endif

@@ -168,6 +168,13 @@ static void smooth_normals(struct mcr_batch *batch)
             smooth_normal(triangles, (uint32_t)(at->primitive[k] - triangles->first_primitive), at, k);
 }
 
+void MCR_ISA_NAME(mcr_stage_gather)(uint32_t n, const uint32_t *index, const double *table, double *out)
+{
+    MCR_LANES
+    for (uint32_t i = 0; i < n; i++)
+        out[i] = table[index[i]];
+}
+
 void MCR_ISA_NAME(mcr_stage_surface)(struct mcr_batch *batch)
 {
     const struct mcr_surfaces *s = &batch->core->surfaces;

@@ -113,6 +113,7 @@ struct mcr_points {
     const double *gx, *gy, *gz; /* geometric normal, unit, on the side of the outgoing direction */
     const double *ox, *oy, *oz; /* outgoing direction: toward where the path came from */
     const double *side;         /* +1 where the outgoing direction is on the front of the surface, -1 on its back */
+    const double *wanted;       /* 0 in lanes whose results nobody looks at, which need not be computed; NULL: all are wanted */
 };
 
 /* n unit directions that leave the surface. (0, 0, 0) means that nothing was drawn in that lane. */

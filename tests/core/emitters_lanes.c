@@ -302,6 +302,53 @@ static void test_table(void)
     stage_end(&s);
 }
 
+/* Drawing in wanted lanes alone: the same bits there as in a full draw, nothing elsewhere, and the kept densities serve every lane. */
+static void test_wanted(uint32_t many, uint32_t by, double share)
+{
+    const struct mcr_emitter_functions *f = best_functions();
+    struct stage s;
+    struct batch full, some;
+    double *wanted = doubles(LANES), *plain = doubles(LANES), *kept = doubles(LANES);
+    uint64_t drawn = 0, elsewhere = 0, densities = 0, count = 0;
+    make_stage(&s, many);
+    batch_begin(&full, LANES);
+    batch_begin(&some, LANES);
+    make_points(&full);
+    make_points(&some);
+    for (uint32_t i = 0; i < LANES; i++) {
+        wanted[i] = mcr_number(i, 16) < share ? 1 : 0;
+        some.x[i] = some.y[i] = some.z[i] = some.density[i] = 77;
+        count += wanted[i] != 0;
+    }
+    some.at.wanted = wanted;
+    batch_draw(&full, &s, f, by);
+    batch_draw(&some, &s, f, by);
+    for (uint32_t i = 0; i < LANES; i++) {
+        int same = mcr_bits(full.x[i]) == mcr_bits(some.x[i]) && mcr_bits(full.y[i]) == mcr_bits(some.y[i]) &&
+                   mcr_bits(full.z[i]) == mcr_bits(some.z[i]) && mcr_bits(full.density[i]) == mcr_bits(some.density[i]);
+        int untouched = some.x[i] == 77 && some.y[i] == 77 && some.z[i] == 77 && some.density[i] == 77;
+        drawn += wanted[i] != 0 && !same;
+        elsewhere += wanted[i] == 0 && !untouched;
+        some.x[i] = full.x[i];
+        some.y[i] = full.y[i];
+        some.z[i] = full.z[i];
+    }
+    batch_density(&some, &s, f, by, plain);
+    batch_density_kept(&some, &s, f, by, kept);
+    for (uint32_t i = 0; i < LANES; i++)
+        densities += !(fabs(plain[i] - kept[i]) <= 1e-15 * plain[i]); /* found along another way: a few roundings */
+    ok(count >= (share > 0 ? 1 : 0) && !drawn && !elsewhere && !densities,
+       "%u emitters, by %s, %llu of %u lanes wanted: draws (%llu differ), other lanes (%llu touched), kept densities (%llu differ)", s.emitters->count,
+       by ? "solid angle" : "area", (unsigned long long)count, LANES, (unsigned long long)drawn, (unsigned long long)elsewhere,
+       (unsigned long long)densities);
+    free(wanted);
+    free(plain);
+    free(kept);
+    batch_end(&full);
+    batch_end(&some);
+    stage_end(&s);
+}
+
 int main(void)
 {
     test_bits(0);
@@ -317,5 +364,10 @@ int main(void)
     test_tree(60);
     test_extremes();
     test_table();
+    static const double shares[] = {0, 0.01, 0.5, 1};
+    static const uint32_t counts[] = {0, 3, 12, 60}; /* and a triangle: 1, 4, 13 and 61 emitters */
+    for (uint32_t k = 0; k < 16; k++)
+        for (uint32_t by = 0; by <= 1; by++)
+            test_wanted(counts[k / 4], by, shares[k % 4]);
     return tap_done();
 }
