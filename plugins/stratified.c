@@ -7,6 +7,8 @@
  *   25 x 40); else, as for primes, floor(sqrt N) rows whose counts differ by at most one and whose heights are in proportion to
  *   their counts. All cells have area 1/N, so that samples keep equal weights and the variance is never above that of
  *   independent numbers.
+ *   compat=floor-sqrt makes a mistake of the founding study: floor(sqrt N) squared cells for N samples. The core leaves the other samples
+ *   black, and the picture is too dark by their share.
  * Order.  Which cell a sample takes is a permutation that is computed from the pixel's key, without tables: a Feistel network on
  *   pairs (left, right) of Z_a x Z_b with a * b >= cells (J. Black, P. Rogaway, "Ciphers with arbitrary finite domains", CT-RSA 2002:
  *   the generalised Feistel, and cycle walking where a * b > cells). Each pixel and each set has a permutation of its own.
@@ -37,10 +39,17 @@ static const struct mcr_parameter parameters[] = {
      .fallback = {0},
      .min = 0,
      .max = 65536},
+    {.size = sizeof(struct mcr_parameter),
+     .type = MCR_TYPE_CHOICE,
+     .name = "compat",
+     .unit = "",
+     .choices = "none|floor-sqrt",
+     .summary = "A mistake of the founding study to make, which darkens the picture; where it is not set, what the render's `compat` names."},
 };
 
 struct stratified {
     uint32_t n, m; /* 0: automatic */
+    int floor_sqrt;
 };
 
 /* How a pixel is cut: long_rows rows of columns + 1 cells come first, then rows of `columns` cells. */
@@ -58,11 +67,16 @@ static int32_t create(const struct mcr_host *host, struct mcr_context *context, 
         host->report(host, context, MCR_REPORT_ERROR, "n * m is above 1073741824 (2^30), the largest number of cells");
         return MCR_E_INVALID;
     }
+    if (n + m > 0 && with->values->number[6] > 0) {
+        host->report(host, context, MCR_REPORT_ERROR, "compat=floor-sqrt chooses the cells itself: expected neither n nor m, or compat=none");
+        return MCR_E_INVALID;
+    }
     stratified = malloc(sizeof *stratified);
     if (!stratified)
         return MCR_E_NOMEM;
     stratified->n = (uint32_t)n;
     stratified->m = (uint32_t)m;
+    stratified->floor_sqrt = with->values->number[6] > 0;
     *instance = stratified;
     return MCR_OK;
 }
@@ -100,6 +114,8 @@ static struct strata cut(const struct stratified *stratified, uint32_t planned)
     struct strata strata = {0};
     uint32_t n = stratified->n, m = stratified->m, root, most;
 
+    if (stratified->floor_sqrt)
+        n = m = (uint32_t)sqrt(planned < MOST_CELLS ? planned : MOST_CELLS);
     if (n || m) {
         most = MOST_CELLS / (n ? n : m);
         if (!n)
@@ -241,7 +257,7 @@ MCR_HIDDEN const struct mcr_numbers_plugin MCR_ISA_NAME(descriptor) = {
     .head = {.size = sizeof(struct mcr_numbers_plugin),
              .kind = MCR_KIND_NUMBERS,
              .isa = MCR_ISA,
-             .parameter_count = 2,
+             .parameter_count = 3,
              .name = "stratified",
              .version = "0.9",
              .licence = "Apache-2.0",

@@ -7,6 +7,22 @@ _mcrender_words() # program: the words of all plugins
     "$1" plugins 2>/dev/null | sed -n 's/^  \([a-z][a-z0-9_-]*\)  .*/\1/p'
 }
 
+_mcrender_compare() # program word before: into COMPREPLY
+{
+    case $3 in
+    --encoding) mapfile -t COMPREPLY < <(compgen -W 'linear srgb8' -- "$2") ;;
+    --map-kind) mapfile -t COMPREPLY < <(compgen -W 'signed absolute relative' -- "$2") ;;
+    --fail-above) mapfile -t COMPREPLY < <(compgen -S = -W "$("$1" compare --help 2>/dev/null | sed -n 's/^Metrics: //p')" -- "$2") ;;
+    --peak | --confidence | --map-range) ;;
+    *)
+        if [[ $2 == -* ]]; then
+            mapfile -t COMPREPLY < <(compgen -W "$("$1" compare --help 2>/dev/null | grep -oE '^  -[-a-z]+' | tr -d ' ')" -- "$2")
+        else
+            mapfile -t COMPREPLY < <(compgen -f -- "$2")
+        fi ;;
+    esac
+}
+
 _mcrender()
 {
     local program=${COMP_WORDS[0]} word=${COMP_WORDS[COMP_CWORD]} before=${COMP_WORDS[COMP_CWORD - 1]} command=
@@ -22,13 +38,15 @@ _mcrender()
     -o | --report) mapfile -t COMPREPLY < <(compgen -f -- "$word"); return ;;
     --spp | --depth | --seed | --threads | --size | --crop | --batch | --set | --exposure) return ;;
     esac
-    if [[ $word == -* ]]; then
+    if [ "$command" = compare ]; then
+        _mcrender_compare "$program" "$word" "$before"
+    elif [[ $word == -* ]]; then
         mapfile -t COMPREPLY < <(compgen -W "$("$program" --help 2>/dev/null | grep -oE '  -[-a-z]+' | tr -d ' ')" -- "$word")
     elif [ "$command" = plugins ]; then
         mapfile -t COMPREPLY < <(compgen -W "$(_mcrender_words "$program")" -- "$word")
     else
         mapfile -t COMPREPLY < <(compgen -f -X '!*.scn' -- "$word"; compgen -d -- "$word")
-        [ "$COMP_CWORD" = 1 ] && mapfile -t -O "${#COMPREPLY[@]}" COMPREPLY < <(compgen -W 'check plugins' -- "$word")
+        [ "$COMP_CWORD" = 1 ] && mapfile -t -O "${#COMPREPLY[@]}" COMPREPLY < <(compgen -W 'check compare plugins' -- "$word")
     fi
 }
 

@@ -48,6 +48,7 @@ int mcr_load(struct mcr_loaded_scene *loaded, struct mcr_options *options)
     double start = mcr_wall_seconds();
     const struct mcr_item *root = mcr_parse_file(loaded->arena, loaded->diagnostics, options->scene, options->definition, options->definition_count);
     double parsed = mcr_wall_seconds();
+    loaded->root = root;
     loaded->parse_seconds = parsed - start;
     if (root)
         loaded->scene = mcr_scene_build(loaded->arena, loaded->diagnostics, loaded->registry, root, &options->overrides);

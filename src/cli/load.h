@@ -9,6 +9,7 @@ struct mcr_loaded_scene {
     struct mcr_arena *arena;
     struct mcr_diagnostics *diagnostics;
     struct mcr_registry *registry;
+    const struct mcr_item *root;       /* the tree; NULL after errors */
     struct mcr_scene *scene;           /* NULL after errors */
     double parse_seconds, build_seconds;
 };

@@ -12,22 +12,22 @@ static void take_closed_descriptors(void)
             (void)!open("/dev/null", fd ? O_RDONLY : O_WRONLY);
 }
 
-int main(int argc, char **argv)
+/* A command that works on a scene; all have their options from one table. */
+static int scene_command(int argc, char **argv)
 {
     static const struct {
         const char *name;
         int (*run)(struct mcr_options *options);
         int needs_operand;
-    } commands[] = {{"", mcr_command_render, 1}, {"check", mcr_command_check, 1}, {"plugins", mcr_command_plugins, 0}};
+    } commands[] = {{"", mcr_command_render, 1}, {"check", mcr_command_check, 1}, {"study", mcr_command_study, 1}, {"plugins", mcr_command_plugins, 0}};
     struct mcr_options options;
     size_t c = 0;
-    take_closed_descriptors();
     for (size_t i = 1; argc > 1 && i < sizeof commands / sizeof *commands; i++)
         if (!strcmp(argv[1], commands[i].name))
             c = i;
     int status = mcr_options_parse(&options, commands[c].name, c ? argc - 1 : argc, c ? argv + 1 : argv);
     if (!status && options.help) {
-        mcr_options_help(stdout);
+        (commands[c].run == mcr_command_study ? mcr_study_options_help : mcr_options_help)(stdout);
     } else if (!status && options.version) {
         puts("mcrender " PACKAGE_VERSION);
     } else if (!status && commands[c].needs_operand && !options.scene) {
@@ -37,6 +37,13 @@ int main(int argc, char **argv)
         status = commands[c].run(&options);
     }
     mcr_options_fini(&options);
+    return status;
+}
+
+int main(int argc, char **argv)
+{
+    take_closed_descriptors();
+    int status = argc > 1 && !strcmp(argv[1], "compare") ? mcr_command_compare(argc - 1, argv + 1) : scene_command(argc, argv);
     if (fflush(stdout) || ferror(stdout)) {
         fprintf(stderr, "mcrender: error: standard output could not be written\n");
         status = status ? status : MCR_EXIT_FAILED;

@@ -9,38 +9,42 @@
 #include "base/cpu.h"
 
 enum option_id {
-    OUTPUT, SPP, DEPTH, SEED, THREADS, SAMPLER, SIZE, CROP, PRECISION, ACCEL, ISA, BATCH, SET, PLUGIN, REPORT, PROFILE, BITS, EXPOSURE, QUIET, WERROR,
-    HELP, VERSION
+    OUTPUT, SPP, DEPTH, SEED, THREADS, SAMPLER, SIZE, CROP, PRECISION, ACCEL, ISA, BATCH, REPLICATES, ROULETTE, COMPAT, SET, PLUGIN, LAYERS, REPORT,
+    PROFILE, BITS, EXPOSURE, QUIET, WERROR, HELP, VERSION
 };
 
 /* Where an option may stand. */
-enum { RENDER = 1, CHECK = 2, PLUGINS = 4, ALL = 7 };
+enum { RENDER = 1, CHECK = 2, PLUGINS = 4, STUDY = 8, ALL = 15 };
 
 static const struct option {
     enum option_id id;
     int where;
     const char *name, *argument, *text;
 } table[] = { /* in the order of option_id */
-    {OUTPUT, RENDER, "-o", "FILE", "image; '-': stdout"},
+    {OUTPUT, RENDER | STUDY, "-o", "FILE", "image; '-': stdout"},
     {SPP, RENDER | CHECK, "--spp", "N", "samples per pixel"},
     {DEPTH, RENDER | CHECK, "--depth", "N", "scatterings at most"},
     {SEED, RENDER | CHECK, "--seed", "N", "of all randomness"},
-    {THREADS, RENDER | CHECK, "--threads", "N", "0: all processors"},
+    {THREADS, RENDER | CHECK | STUDY, "--threads", "N", "0: all processors"},
     {SAMPLER, RENDER | CHECK, "--sampler", "EXPR", "draws directions"},
-    {SIZE, RENDER | CHECK, "--size", "WxH", "of the picture"},
-    {CROP, RENDER | CHECK, "--crop", "X,Y,X,Y", "part of the picture"},
+    {SIZE, RENDER | CHECK | STUDY, "--size", "WxH", "of the picture"},
+    {CROP, RENDER | CHECK | STUDY, "--crop", "X,Y,X,Y", "part of the picture"},
     {PRECISION, RENDER | CHECK, "--precision", "KIND", "double"},
     {ACCEL, RENDER | CHECK, "--accel", "KIND", "auto, list, bvh"},
-    {ISA, RENDER | CHECK | PLUGINS, "--isa", "NAME", "instruction set"},
-    {BATCH, RENDER | CHECK, "--batch", "N", "paths at once"},
-    {SET, RENDER | CHECK, "--set", "NAME=VALUE", "replaces a `let`"},
+    {ISA, RENDER | CHECK | PLUGINS | STUDY, "--isa", "NAME", "instruction set"},
+    {BATCH, RENDER | CHECK | STUDY, "--batch", "N", "paths at once"},
+    {REPLICATES, RENDER | CHECK, "--replicates", "N", "for the error"},
+    {ROULETTE, RENDER | CHECK, "--roulette", "WORD", "on, off, on(from=N)"},
+    {COMPAT, RENDER | CHECK, "--compat", "LIST", "known mistakes"},
+    {SET, RENDER | CHECK | STUDY, "--set", "NAME=VALUE", "replaces a `let`"},
     {PLUGIN, ALL, "--plugin", "FILE", "before all others"},
+    {LAYERS, RENDER, "--layers", "variance", "in EXR"},
     {REPORT, RENDER, "--report", "FILE", "figures as JSON"},
     {PROFILE, RENDER, "--profile", NULL, "time of each stage"},
     {BITS, RENDER, "--bits", "8|16", "of PPM, PNG, TIFF"},
     {EXPOSURE, RENDER, "--exposure", "STOPS", "of PPM, PNG, JPEG"},
-    {QUIET, RENDER | CHECK, "--quiet", NULL, "errors and warnings"},
-    {WERROR, RENDER | CHECK, "--werror", NULL, "warnings are errors"},
+    {QUIET, RENDER | CHECK | STUDY, "--quiet", NULL, "errors and warnings"},
+    {WERROR, RENDER | CHECK | STUDY, "--werror", NULL, "warnings are errors"},
     {HELP, ALL, "--help", NULL, "this text"},
     {VERSION, ALL, "--version", NULL, "the version"},
 };
@@ -52,6 +56,8 @@ void mcr_options_help(FILE *to)
     const size_t rows = (OPTIONS + 1) / 2;
     fputs("Usage: mcrender SCENE [-o FILE]... [OPTION]...   render; - is standard input\n"
           "       mcrender check SCENE [OPTION]...          parse and build only\n"
+          "       mcrender study SCENE [OPTION]...          compare samplers; study --help\n"
+          "       mcrender compare IMAGE REFERENCE          their distance; compare --help\n"
           "       mcrender plugins [NAME]                   list plugins, or explain one\n\n",
           to);
     for (size_t row = 0; row < rows; row++) {
@@ -176,9 +182,36 @@ static int take_exposure(struct mcr_options *options, const char *text)
     return 0;
 }
 
+/* on, off or on(from=N), as in scenes. */
+static int take_roulette(struct mcr_overrides *o, const char *text)
+{
+    static const char before[] = "on(from=", form[] = "on, off or on(from=N)";
+    char digits[16];
+    size_t length = strlen(text), head = sizeof before - 1;
+    o->has_roulette = 1;
+    o->roulette = strcmp(text, "off") != 0;
+    o->has_roulette_from = 0;
+    if (!o->roulette || !strcmp(text, "on"))
+        return 0;
+    if (strncmp(text, before, head) || text[length - 1] != ')' || length - head > sizeof digits)
+        return usage_error("--roulette expects %s, not '%s'", form, text);
+    snprintf(digits, sizeof digits, "%.*s", (int)(length - head - 1), text + head);
+    return whole32("--roulette on(from=N)", digits, 0, INT32_MAX - 1, &o->roulette_from, &o->has_roulette_from);
+}
+
+static int take_compat(struct mcr_overrides *o, const char *text)
+{
+    char reason[256];
+    if (mcr_compat_parse(text, &o->compat, reason, sizeof reason))
+        return usage_error("--compat %s", reason);
+    o->has_compat = 1;
+    return 0;
+}
+
 static int take(struct mcr_options *options, const struct option *option, const char *text)
 {
     static const char *const precisions[] = {"double", "single"}, *const accels[] = {"auto", "list", "bvh", "embree"};
+    static const char *const layers[] = {"variance"};
     struct mcr_overrides *o = &options->overrides;
     uint32_t chosen;
     switch (option->id) {
@@ -223,6 +256,15 @@ static int take(struct mcr_options *options, const struct option *option, const 
         return take_isa(options, text);
     case BATCH:
         return whole32("--batch", text, 0, 65536, &o->batch, &o->has_batch);
+    case REPLICATES:
+        return whole32("--replicates", text, 1, 4096, &o->replicates, &o->has_replicates);
+    case ROULETTE:
+        return take_roulette(o, text);
+    case COMPAT:
+        return take_compat(o, text);
+    case LAYERS:
+        options->variance_layer = o->channel_variance = 1;
+        return word("--layers", text, layers, 1, 1, &chosen);
     case SET:
         return take_set(options, text);
     case PLUGIN:
@@ -303,8 +345,11 @@ static const struct option *find(const char *argument, const char **value)
 
 int mcr_options_parse(struct mcr_options *options, const char *command, int argc, char **argv)
 {
-    int where = !strcmp(command, "check") ? CHECK : !strcmp(command, "plugins") ? PLUGINS : RENDER, operands_only = 0;
+    int where = !strcmp(command, "check") ? CHECK : !strcmp(command, "plugins") ? PLUGINS : !strcmp(command, "study") ? STUDY : RENDER;
+    int operands_only = 0;
     memset(options, 0, sizeof *options);
+    options->argument_count = argc;
+    options->argument = argv;
     options->isa = mcr_cpu_isa();
     if (options->isa >= MCR_ISA_COUNT)
         options->isa = MCR_ISA_COUNT - 1;
@@ -320,7 +365,10 @@ int mcr_options_parse(struct mcr_options *options, const char *command, int argc
             operands_only = 1;
             continue;
         }
-        const struct option *option = find(argv[i], &value);
+        int taken = where == STUDY ? mcr_study_option(&options->study, argc, argv, &i) : 0;
+        if (taken > 0)
+            continue;
+        const struct option *option = taken ? NULL : find(argv[i], &value); /* taken < 0: a message was printed */
         if (!option)
             return MCR_EXIT_USAGE;
         if (!(option->where & where))
@@ -343,4 +391,5 @@ void mcr_options_fini(struct mcr_options *options)
     for (uint32_t i = 0; i < options->definition_count; i++)
         free(options->definition_text[i]);
     options->definition_count = 0;
+    mcr_study_options_fini(&options->study);
 }

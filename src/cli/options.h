@@ -5,6 +5,7 @@
 
 #include <stdio.h>
 
+#include "cli/study_options.h"
 #include "image/image.h"
 #include "language/tree.h"
 #include "scene/scene.h"
@@ -27,11 +28,15 @@ struct mcr_options {
     uint32_t plugin_count;
     struct mcr_overrides overrides;
     const char *report;
+    int variance_layer;                           /* --layers variance */
     uint32_t isa;
     uint32_t bits;
     double exposure;
     int quiet, werror, profile;
     int help, version;
+    struct mcr_study_options study;
+    int argument_count;                           /* the command's words: argument[1] .. [argument_count - 1] follow it */
+    char **argument;
 };
 
 /*

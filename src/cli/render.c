@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* mcrender SCENE: parse, build, render, write, report. */
-#include <signal.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -9,28 +8,8 @@
 #include "base/cpu.h"
 #include "cli/commands.h"
 #include "cli/report.h"
-
-static volatile sig_atomic_t stop_asked;
-
-/* The first signal lets the running pass end; a second one kills. */
-static void on_stop(int number)
-{
-    (void)number;
-    stop_asked = 1;
-    signal(SIGINT, SIG_DFL);
-    signal(SIGTERM, SIG_DFL);
-}
-
-static void signals(void)
-{
-    static const int stops[] = {SIGINT, SIGTERM};
-    struct sigaction stop = {.sa_handler = on_stop, .sa_flags = SA_RESTART}, ignore = {.sa_handler = SIG_IGN}, before;
-    for (int i = 0; i < 2; i++)
-        if (!sigaction(stops[i], NULL, &before) && before.sa_handler != SIG_IGN) /* as nohup and shells have it for background jobs */
-            sigaction(stops[i], &stop, NULL);
-    sigaction(SIGPIPE, &ignore, NULL); /* writing fails with EPIPE */
-    sigaction(SIGXFSZ, &ignore, NULL); /* writing fails with EFBIG */
-}
+#include "cli/stop.h"
+#include "image/format.h"
 
 #define PROGRESS_WIDTH 60 /* columns, enough for what is shown */
 
@@ -112,41 +91,107 @@ static int targets_open(struct targets *targets, const struct mcr_report_data *d
     return status;
 }
 
-#define ATTRIBUTES 10
+#define ATTRIBUTES 13
 
-/* The film's mean as an image, and what it says of itself. */
-static int write_all(struct mcr_report_data *data, struct targets *targets)
+/* What a file says of its picture. */
+struct metadata {
+    uint32_t count; /* of those that all files have; one more follows */
+    struct mcr_attribute attribute[ATTRIBUTES];
+    char hash[20], spp[12], depth[12], seed[24], samples[24], units[12], compat[MCR_COMPAT_TEXT];
+};
+
+static void describe(struct metadata *meta, const struct mcr_report_data *data)
 {
-    static const char *const names[] = {"R", "G", "B"};
     const struct mcr_scene *scene = data->loaded->scene;
-    char text[ATTRIBUTES][32];
-    struct mcr_attribute attribute[ATTRIBUTES] = {
+    const struct mcr_render_settings *render = &scene->render;
+    const struct mcr_attribute always[] = {
         {"mcrender:version", PACKAGE_VERSION},
-        {"mcrender:scene", text[1]},
+        {"mcrender:scene", meta->hash},
         {"mcrender:sampler", scene->sampler->expression},
-        {"mcrender:spp", text[3]},
-        {"mcrender:depth", text[4]},
-        {"mcrender:seed", text[5]},
+        {"mcrender:spp", meta->spp},
+        {"mcrender:depth", meta->depth},
+        {"mcrender:seed", meta->seed},
         {"mcrender:precision", "double"},
         {"mcrender:accelerator", mcr_accel_name(data->accel->kind)},
         {"mcrender:coverage", data->coverage.complete ? "complete" : data->coverage.missing},
-        {"mcrender:samples", text[9]},
+        {"mcrender:samples", meta->samples},
     };
-    snprintf(text[1], sizeof text[1], "%016llx", (unsigned long long)scene->hash);
-    snprintf(text[3], sizeof text[3], "%u", scene->render.spp);
-    snprintf(text[4], sizeof text[4], "%u", scene->render.depth);
-    snprintf(text[5], sizeof text[5], "%llu", (unsigned long long)scene->render.seed);
-    snprintf(text[9], sizeof text[9], "%llu", (unsigned long long)data->film->samples);
-    struct mcr_write_options options = {data->options->bits, data->options->exposure, ATTRIBUTES, attribute};
-    struct mcr_image *image = mcr_image_create(data->film->width, data->film->height, 3, names);
+    snprintf(meta->hash, sizeof meta->hash, "%016llx", (unsigned long long)scene->hash);
+    snprintf(meta->spp, sizeof meta->spp, "%u", render->spp);
+    snprintf(meta->depth, sizeof meta->depth, "%u", render->depth);
+    snprintf(meta->seed, sizeof meta->seed, "%llu", (unsigned long long)render->seed);
+    snprintf(meta->samples, sizeof meta->samples, "%llu", (unsigned long long)data->film->samples);
+    snprintf(meta->units, sizeof meta->units, "%u", data->film->units);
+    mcr_compat_text(render->compat, meta->compat);
+    memcpy(meta->attribute, always, sizeof always);
+    meta->count = sizeof always / sizeof *always;
+    if (render->compat) {
+        meta->attribute[meta->count++] = (struct mcr_attribute){"mcrender:biased", "true"};
+        meta->attribute[meta->count++] = (struct mcr_attribute){"mcrender:compat", meta->compat};
+    }
+    meta->attribute[meta->count] = (struct mcr_attribute){"mcrender:units", meta->units}; /* for files with the variance layer */
+}
+
+#define LAYER_CHANNELS 7u
+
+/* The variance of the mean in R, G, B and luminance, behind the mean. Returns 0, or -1 when memory is short. */
+static int fill_variance(const struct mcr_film *film, double *channel)
+{
+    double *rgb = calloc(film->pixels, 3 * sizeof *rgb), *luminance = calloc(film->pixels, sizeof *luminance);
+    int status = rgb && luminance ? 0 : -1;
+    if (!status && !mcr_film_channel_variance(film, rgb) && !mcr_film_variance(film, luminance))
+        for (uint64_t p = 0; p < film->pixels; p++) {
+            memcpy(channel + LAYER_CHANNELS * p + 3, rgb + 3 * p, 3 * sizeof *rgb);
+            channel[LAYER_CHANNELS * p + 6] = luminance[p];
+        }
+    free(rgb);
+    free(luminance);
+    return status;
+}
+
+/* The film's mean, and its variance where that is asked for and known. NULL when memory is short. */
+static struct mcr_image *develop(const struct mcr_film *film)
+{
+    static const char *const names[LAYER_CHANNELS] = {"R", "G", "B", "variance.R", "variance.G", "variance.B", "variance.Y"};
+    struct mcr_image *image = mcr_image_create(film->width, film->height, 3, names), *all;
+    if (image)
+        mcr_film_mean(film, image->data);
+    if (!image || !film->channels || film->units < 2)
+        return image;
+    all = mcr_image_create(film->width, film->height, LAYER_CHANNELS, names);
+    for (uint64_t p = 0; all && p < film->pixels; p++)
+        memcpy(all->data + LAYER_CHANNELS * p, image->data + 3 * p, 3 * sizeof *image->data);
+    mcr_image_destroy(image);
+    if (all && fill_variance(film, all->data)) {
+        mcr_image_destroy(all);
+        return NULL;
+    }
+    return all;
+}
+
+/* 1 or 0; -1 where the file's format cannot be written at all. */
+static int holds_layers(const char *path)
+{
+    char reason[512];
+    const struct mcr_format *format = mcr_format_of_path(path, reason, sizeof reason);
+    return format ? (int)format->all_channels : -1;
+}
+
+static int write_all(struct mcr_report_data *data, struct targets *targets)
+{
+    struct metadata meta;
+    struct mcr_image *image = develop(data->film);
     int status = MCR_EXIT_DONE;
     if (!image) {
         fputs("mcrender: error: out of memory\n", stderr);
         return MCR_EXIT_FAILED;
     }
-    mcr_film_mean(data->film, image->data);
+    describe(&meta, data);
+    struct mcr_write_options options = {data->options->bits, data->options->exposure, meta.count, meta.attribute};
     for (uint32_t i = 0; i < data->output_count; i++) {
         struct mcr_report_output *output = &data->output[i];
+        output->layers = image->channels == LAYER_CHANNELS && holds_layers(output->path) > 0;
+        options.attribute_count = meta.count + (output->layers ? 1 : 0);
         output->failed = mcr_target_write(targets->target[i], image, &options, &output->result) != 0;
         targets->target[i] = NULL;
         if (output->failed) {
@@ -156,16 +201,6 @@ static int write_all(struct mcr_report_data *data, struct targets *targets)
     }
     mcr_image_destroy(image);
     return status;
-}
-
-static int film_add(void *film, const struct mcr_cell *cell, uint32_t count)
-{
-    return mcr_film_add(film, cell, count);
-}
-
-static void film_end_replicate(void *film)
-{
-    mcr_film_end_replicate(film);
 }
 
 static int report_all(struct mcr_report_data *data, struct targets *targets)
@@ -192,14 +227,14 @@ static int report_all(struct mcr_report_data *data, struct targets *targets)
 static int render(struct mcr_report_data *data, struct mcr_film *film, struct targets *targets)
 {
     struct mcr_render_stats stats;
-    struct mcr_render_options how = {.isa = data->options->isa, .profile = data->options->profile, .stop = &stop_asked};
-    struct mcr_cell_sink sink = {film, film_add, film_end_replicate};
+    struct mcr_render_options how = {.isa = data->options->isa, .profile = data->options->profile, .stop = &mcr_stop_asked};
+    struct mcr_cell_sink sink = mcr_film_sink(film);
     char reason[512];
     data->stats = &stats;
     mcr_coverage(data->loaded->scene, &data->coverage);
     if (isatty(STDERR_FILENO) && !data->options->quiet)
         how.progress = progress;
-    signals();
+    mcr_stop_catch();
     int status = mcr_render(data->loaded->scene, data->accel, &how, &sink, &stats, reason, sizeof reason);
     if (how.progress)
         fprintf(stderr, "\r%*s\r", PROGRESS_WIDTH, "");
@@ -220,12 +255,38 @@ static int render(struct mcr_report_data *data, struct mcr_film *film, struct ta
     return stats.interrupted ? MCR_EXIT_INTERRUPTED : MCR_EXIT_DONE;
 }
 
+/*
+ * Whether the variance layer that was asked for can be had: some file must hold it, and the samples must tell it. What is known before the first ray is
+ * told then. Returns an exit status.
+ */
+static int check_layers(const struct mcr_report_data *data)
+{
+    const struct mcr_scene *scene = data->loaded->scene;
+    const struct mcr_render_settings *render = &scene->render;
+    int held = 0;
+    if (!data->options->variance_layer)
+        return MCR_EXIT_DONE;
+    for (uint32_t i = 0; i < data->output_count; i++)
+        held |= holds_layers(data->output[i].path); /* a format that cannot be written is told when the targets are opened */
+    if (!held)
+        fprintf(stderr, "mcrender: error: --layers variance: '%s' cannot hold layers, .exr can\n", data->output[0].path);
+    else if (scene->sampler->correlated && render->replicates < 2)
+        fputs("mcrender: error: --layers variance: the numbers are correlated, and their variance is known from 2 replicates on (--replicates 2)\n", stderr);
+    else if (!scene->sampler->correlated && render->spp < 2)
+        fputs("mcrender: error: --layers variance: one sample per pixel tells nothing of its variance\n", stderr);
+    else
+        return MCR_EXIT_DONE;
+    return MCR_EXIT_USAGE;
+}
+
 /* From a good scene to the exit status. */
 static int prepare_and_render(struct mcr_report_data *data, struct targets *targets)
 {
     struct mcr_loaded_scene *loaded = data->loaded;
     const struct mcr_film_settings *film_settings = &loaded->scene->film;
-    int status = targets_open(targets, data);
+    int status = check_layers(data);
+    if (!status)
+        status = targets_open(targets, data);
     if (status)
         return status;
     double start = mcr_wall_seconds();
@@ -234,7 +295,7 @@ static int prepare_and_render(struct mcr_report_data *data, struct targets *targ
     data->film = film;
     data->accel = mcr_accel_create(loaded->arena, loaded->scene, loaded->scene->render.accel);
     data->accel_seconds = mcr_wall_seconds() - start;
-    if (data->accel && film) {
+    if (data->accel && film && (!data->options->variance_layer || !mcr_film_keep_channels(film))) {
         status = render(data, film, targets);
     } else {
         fputs("mcrender: error: out of memory\n", stderr);

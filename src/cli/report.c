@@ -66,6 +66,11 @@ void mcr_report_text(FILE *to, const struct mcr_report_data *data)
     if (data->film->correlated && render->replicates > 1)
         fprintf(to, "          %u replicates of %u samples\n", render->replicates, render->spp / render->replicates);
     text_loaded(to, data);
+    if (render->compat) {
+        char compat[MCR_COMPAT_TEXT];
+        mcr_compat_text(render->compat, compat);
+        fprintf(to, "compat    BIASED on purpose: %s\n", compat);
+    }
     fprintf(to, "coverage  %s%s\n", data->coverage.complete ? "complete" : "INCOMPLETE: misses ", data->coverage.missing);
     fprintf(to, "time      parse %.4f s, build %.4f s, render %.3f s (processor %.3f s, %u threads), write %.3f s\n", data->loaded->parse_seconds,
             data->loaded->build_seconds + data->accel_seconds, seconds, stats->cpu_seconds, stats->threads, data->write_seconds);
@@ -86,7 +91,7 @@ void mcr_report_text(FILE *to, const struct mcr_report_data *data)
         const struct mcr_report_output *output = &data->output[i];
         if (output->failed)
             continue;
-        fprintf(to, "wrote     %s", output->path);
+        fprintf(to, "wrote     %s%s", output->path, output->layers ? " with layers" : "");
         if (output->result.overflowed)
             fprintf(to, " (%llu values beyond the format's range were clipped)", (unsigned long long)output->result.overflowed);
         if (output->result.not_finite)
@@ -98,6 +103,13 @@ void mcr_report_text(FILE *to, const struct mcr_report_data *data)
 void mcr_report_warnings(FILE *to, const struct mcr_report_data *data)
 {
     const struct mcr_render_stats *stats = data->stats;
+    char compat[MCR_COMPAT_TEXT];
+    mcr_compat_text(data->loaded->scene->render.compat, compat);
+    if (data->loaded->scene->render.compat)
+        fprintf(to, "mcrender: warning: this picture is biased on purpose: compat %s\n", compat);
+    if (data->options->variance_layer && data->film->units < 2)
+        fprintf(to, "mcrender: warning: the variance layer is left out: of %s, %u is finished\n", data->film->correlated ? "the replicates" : "the samples",
+                data->film->units);
     if (!data->coverage.complete)
         fprintf(to, "mcrender: warning: this sampler alone does not estimate the whole image: it misses %s\n", data->coverage.missing);
     if (stats->not_finite)
@@ -111,7 +123,7 @@ static void json_scene(struct mcr_json_writer *json, const struct mcr_report_dat
 {
     const struct mcr_scene *scene = data->loaded->scene;
     const struct mcr_render_settings *render = &scene->render;
-    char hash[20];
+    char hash[20], compat[MCR_COMPAT_TEXT];
     snprintf(hash, sizeof hash, "%016llx", (unsigned long long)scene->hash);
     mcr_json_begin_object(json, "scene");
     mcr_json_text(json, "file", data->options->scene);
@@ -130,6 +142,9 @@ static void json_scene(struct mcr_json_writer *json, const struct mcr_report_dat
     mcr_json_unsigned(json, "seed", render->seed);
     mcr_json_unsigned(json, "replicates", render->replicates);
     mcr_json_boolean(json, "roulette", render->roulette);
+    mcr_compat_text(render->compat, compat);
+    mcr_json_text(json, "compat", compat);
+    mcr_json_boolean(json, "biased", render->compat != 0);
     mcr_json_text(json, "precision", "double");
     mcr_json_text(json, "accelerator", mcr_accel_name(data->accel->kind));
     mcr_json_text(json, "instruction_set", mcr_cpu_isa_name(data->options->isa));

@@ -11,6 +11,7 @@ struct mcr_report_output {
     const char *path;
     struct mcr_write_result result;
     int failed;
+    int layers;             /* it holds the variance layer */
 };
 
 struct mcr_report_data {

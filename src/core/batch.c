@@ -91,6 +91,11 @@ static void cut_all(struct cutter *c, struct mcr_batch *b)
     b->slot_r = cut(c, (size_t)MCR_JOBS * MCR_JOB_SLOTS, sizeof(double));
     b->slot_g = cut(c, (size_t)MCR_JOBS * MCR_JOB_SLOTS, sizeof(double));
     b->slot_b = cut(c, (size_t)MCR_JOBS * MCR_JOB_SLOTS, sizeof(double));
+    if (core->scene->render.compat & MCR_COMPAT_CLAMP) {
+        b->cap_r = cut(c, (size_t)MCR_JOBS * MCR_JOB_SLOTS, sizeof(double));
+        b->cap_g = cut(c, (size_t)MCR_JOBS * MCR_JOB_SLOTS, sizeof(double));
+        b->cap_b = cut(c, (size_t)MCR_JOBS * MCR_JOB_SLOTS, sizeof(double));
+    }
     b->job = cut(c, MCR_JOBS, sizeof *b->job);
     b->camera_x = cut(c, rays, sizeof(double));
     b->camera_y = cut(c, rays, sizeof(double));

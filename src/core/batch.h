@@ -158,6 +158,7 @@ struct mcr_batch {
     const double **channel;         /* the pointers handed to plugins */
     uint32_t *stride;
     double *slot_r, *slot_g, *slot_b;
+    double *cap_r, *cap_g, *cap_b;  /* by slot; NULL without compat clamp: see compat.h */
     struct mcr_job *job;
     char *scratch;                  /* scratch_bytes */
     uint64_t scratch_used;

@@ -55,6 +55,19 @@ static void block_filter(const struct mcr_film_settings *film, uint32_t n, const
     }
 }
 
+/* Points in the lens, in units of its radius: uniform in area, or as the founding study draws them (its algorithm 4), crowded in the middle. */
+static void lens_points(int polar, uint32_t n, const double *u, const double *v, double *x, double *y)
+{
+    for (uint32_t i = 0; i < n && !polar; i++)
+        mcr_disk_from_square(u[i], v[i], &x[i], &y[i]);
+    for (uint32_t i = 0; i < n && polar; i++) {
+        double sine, cosine;
+        mcr_sincos_turns(v[i], &sine, &cosine);
+        x[i] = u[i] * cosine;
+        y[i] = u[i] * sine;
+    }
+}
+
 /* Rays through film points (s, t): see struct mcr_camera. lens_x, lens_y in units of the radius. */
 static void block_rays(const struct mcr_camera *camera, uint32_t n, const double *s, const double *t, const double *lens_x, const double *lens_y,
                        const struct mcr_camera_lanes *to, uint32_t first)
@@ -100,6 +113,7 @@ static void block_rays(const struct mcr_camera *camera, uint32_t n, const double
 void MCR_ISA_NAME(mcr_stage_camera)(const struct mcr_scene *scene, const struct mcr_camera_lanes *lanes)
 {
     const struct mcr_film_settings *film = &scene->film;
+    const int polar = scene->camera.lens_polar;
     const double step = 2.0 / film->height, half_width = film->width / 2.0, half_height = film->height / 2.0;
     _Alignas(64) double x[BLOCK], y[BLOCK], lens_x[BLOCK], lens_y[BLOCK];
     for (uint32_t first = 0; first < lanes->n; first += BLOCK) {
@@ -112,8 +126,7 @@ void MCR_ISA_NAME(mcr_stage_camera)(const struct mcr_scene *scene, const struct 
             lens_x[i] = lens_y[i] = 0;
         }
         if (lanes->lens)
-            for (uint32_t i = 0; i < n; i++)
-                mcr_disk_from_square(lanes->lens[0][first + i], lanes->lens[1][first + i], &lens_x[i], &lens_y[i]);
+            lens_points(polar, n, lanes->lens[0] + first, lanes->lens[1] + first, lens_x, lens_y);
         block_rays(&scene->camera, n, x, y, lens_x, lens_y, lanes, first);
     }
 }

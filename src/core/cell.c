@@ -34,3 +34,16 @@ void mcr_cell_sum(const double *r, const double *g, const double *b, uint32_t co
     }
     cell->moment = pairwise(v);
 }
+
+void mcr_cell_channel_moments(const double *r, const double *g, const double *b, uint32_t count, const struct mcr_cell *cell,
+                              struct mcr_cell_channels *channels)
+{
+    const double *from[3] = {r, g, b};
+    double v[MCR_CELL_SAMPLES] = {0};
+    for (int c = 0; c < 3; c++) {
+        double mean = cell->sum[c] / count;
+        for (uint32_t i = 0; i < count; i++)
+            v[i] = (from[c][i] - mean) * (from[c][i] - mean);
+        channels->moment[c] = pairwise(v);
+    }
+}

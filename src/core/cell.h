@@ -20,8 +20,16 @@ struct mcr_cell {
     double moment;
 };
 
+/* The same moment of R, G and B each, where they are asked for. */
+struct mcr_cell_channels {
+    double moment[3];
+};
+
 /* Adds up the samples of one cell by pairs: r, g, b [count], count in 1 .. MCR_CELL_SAMPLES, finite. */
 void mcr_cell_sum(const double *r, const double *g, const double *b, uint32_t count, struct mcr_cell *cell);
+/* The channels' moments of a cell that was added up. */
+void mcr_cell_channel_moments(const double *r, const double *g, const double *b, uint32_t count, const struct mcr_cell *cell,
+                              struct mcr_cell_channels *channels);
 
 /*
  * Who takes the cells: the film, or whoever else wants them. Called on the main thread between passes, in the order of the samples.
@@ -33,6 +41,8 @@ struct mcr_cell_sink {
     int (*add)(void *data, const struct mcr_cell *cell, uint32_t count);
     /* The samples since the last call, or the beginning, were one replicate. */
     void (*end_replicate)(void *data);
+    /* Not NULL: called in the place of `add`, with the moments of the channels, which are computed for it only. */
+    int (*add_channels)(void *data, const struct mcr_cell *cell, const struct mcr_cell_channels *channels, uint32_t count);
 };
 
 #endif

@@ -151,6 +151,13 @@ static int worth_tracing(const struct mcr_light_lanes *l, uint32_t k)
     return l->density[k] > 0 && (l->fr[k] > 0 || l->fg[k] > 0 || l->fb[k] > 0);
 }
 
+/* Whether the scattering event of lane k is the last one, behind which compat background-at-limit sees the background. */
+static int at_limit(const struct mcr_batch *batch, uint32_t k)
+{
+    const struct mcr_render_settings *render = &batch->core->scene->render;
+    return (render->compat & MCR_COMPAT_BACKGROUND_AT_LIMIT) && batch->sorted.bounce[k] + 1 >= render->depth;
+}
+
 /* Where a ray leaves the surface point of lane k in the look-up's direction. */
 static void leave_point(const struct mcr_batch *batch, uint32_t k, double o[3])
 {
@@ -171,7 +178,7 @@ static void keep_visible(struct mcr_batch *batch, const struct mcr_range *range)
     uint32_t rays = 0;
     for (uint32_t k = range->begin; k < range->end; k++) {
         l->primitive[k] = -1;
-        if (l->emitter[k] < 0 || !worth_tracing(l, k))
+        if (l->emitter[k] < 0 || !worth_tracing(l, k) || at_limit(batch, k))
             continue;
         uint32_t primitive = core->emitters->emitter[l->emitter[k]].primitive;
         double o[3], n[3], q[3] = {l->qx[k], l->qy[k], l->qz[k]}, d[3], square = 0, reach = core->surfaces.reach[primitive];
@@ -215,6 +222,10 @@ static void trace_directions(struct mcr_batch *batch, const struct mcr_range *ra
         l->emitter[k] = -1;
         if (!worth_tracing(l, k))
             continue;
+        if (at_limit(batch, k)) {
+            l->primitive[k] = -2; /* the background */
+            continue;
+        }
         leave_point(batch, k, o);
         l->ox[rays] = o[0];
         l->oy[rays] = o[1];

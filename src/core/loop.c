@@ -6,6 +6,7 @@
 
 #include "base/cpu.h"
 #include "base/random.h"
+#include "core/compat.h"
 #include "core/host.h"
 #include "core/light.h"
 #include "core/pass.h"
@@ -58,6 +59,8 @@ static struct mcr_job *open_job(struct mcr_batch *batch, struct mcr_pass *pass)
     memset(batch->slot_r + slot, 0, empty->paths * sizeof(double));
     memset(batch->slot_g + slot, 0, empty->paths * sizeof(double));
     memset(batch->slot_b + slot, 0, empty->paths * sizeof(double));
+    if (batch->cap_r)
+        mcr_compat_raise_caps(batch, slot, empty->paths);
     return empty;
 }
 
@@ -86,6 +89,15 @@ static int in_flight(const struct mcr_batch *batch, uint32_t i)
     return found != 0;
 }
 
+/* Adds up one cell, whose samples begin at `slot`. */
+static void finish_cell(const struct mcr_batch *batch, const struct mcr_pass *pass, uint64_t number, size_t slot)
+{
+    const double *r = batch->slot_r + slot, *g = batch->slot_g + slot, *b = batch->slot_b + slot;
+    mcr_cell_sum(r, g, b, pass->cell_samples, &pass->cell[number]);
+    if (pass->channels)
+        mcr_cell_channel_moments(r, g, b, pass->cell_samples, &pass->cell[number], &pass->channels[number]);
+}
+
 /* Sums up the jobs whose paths have all begun and ended. */
 static void finish_jobs(struct mcr_batch *batch, struct mcr_pass *pass)
 {
@@ -93,14 +105,16 @@ static void finish_jobs(struct mcr_batch *batch, struct mcr_pass *pass)
         struct mcr_job *job = &batch->job[i];
         if (!job->busy || job->begun < job->paths || in_flight(batch, i))
             continue;
+        if (batch->cap_r)
+            mcr_compat_clamp(batch, (size_t)i * MCR_JOB_SLOTS, job->paths);
         for (uint32_t c = 0; c < job->cells; c++) {
             size_t slot = (size_t)i * MCR_JOB_SLOTS + (size_t)c * pass->cell_samples;
-            struct mcr_cell *cell = &pass->cell[job->first_cell + c];
-            mcr_cell_sum(batch->slot_r + slot, batch->slot_g + slot, batch->slot_b + slot, pass->cell_samples, cell);
-            if (isfinite(cell->sum[0] + cell->sum[1] + cell->sum[2]))
+            uint64_t number = job->first_cell + c;
+            finish_cell(batch, pass, number, slot);
+            if (isfinite(pass->cell[number].sum[0] + pass->cell[number].sum[1] + pass->cell[number].sum[2]))
                 continue;
-            reject(batch, pass, job->first_cell + c, slot);
-            mcr_cell_sum(batch->slot_r + slot, batch->slot_g + slot, batch->slot_b + slot, pass->cell_samples, cell);
+            reject(batch, pass, number, slot);
+            finish_cell(batch, pass, number, slot);
         }
         job->busy = 0;
         atomic_fetch_add_explicit(&pass->done, job->cells, memory_order_relaxed);
@@ -238,6 +252,8 @@ static int32_t step(struct mcr_batch *batch, struct mcr_pass *pass)
 {
     struct mcr_core *core = batch->core;
     int32_t status;
+    if (core->scene->render.compat & (MCR_COMPAT_BACKGROUND_AT_LIMIT | MCR_COMPAT_FLOOR_SQRT))
+        mcr_compat_end_rays(batch);
     struct mcr_rays rays = {batch->rays, batch->rox, batch->roy, batch->roz, batch->rdx, batch->rdy, batch->rdz};
     TIMED(MCR_STAGE_HIT, core->trace->closest(core->accel, &rays, batch->t, batch->hit));
     if (core->combines)
@@ -250,6 +266,8 @@ static int32_t step(struct mcr_batch *batch, struct mcr_pass *pass)
     if (core->background && batch->miss_count)
         core->stages->background(batch);
     TIMED(MCR_STAGE_SURFACE, core->stages->surface(batch));
+    if (batch->cap_r)
+        mcr_compat_lower_caps(batch);
     TIMED(MCR_STAGE_EMISSION, status = emission(batch));
     for (uint32_t r = 0; !status && r < batch->range_count && !batch->range[r].ends; r++)
         status = scatter_range(batch, &batch->range[r]);

@@ -19,6 +19,7 @@ struct mcr_pass {
     uint32_t cell_samples;
     uint64_t cells;
     struct mcr_cell *cell;            /* results */
+    struct mcr_cell_channels *channels; /* the same for the channels' moments; NULL: nobody asks for them */
     _Atomic uint64_t next;            /* the first cell that nobody took */
     _Atomic uint64_t done;            /* cells finished */
     _Atomic int failed;               /* an operation failed, or memory is short: everybody stops */

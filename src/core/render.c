@@ -134,6 +134,13 @@ static void collect(struct render *render, struct mcr_render_stats *stats)
     }
 }
 
+/* One cell of every pixel goes to the sink. */
+static int hand_on(const struct mcr_pass *pass, const struct mcr_cell_sink *sink, uint64_t first, uint32_t count)
+{
+    return pass->channels ? sink->add_channels(sink->data, pass->cell + first, pass->channels + first, count)
+                          : sink->add(sink->data, pass->cell + first, count);
+}
+
 /* Runs one pass of `blocks` cells a pixel and hands them on. Returns 0, or -1 with pass.error set. */
 static int run_pass(struct render *render, const struct mcr_cell_sink *sink, uint64_t first, uint32_t cell_samples, uint64_t blocks,
                     struct mcr_render_stats *stats)
@@ -148,7 +155,7 @@ static int run_pass(struct render *render, const struct mcr_cell_sink *sink, uin
     if (atomic_load(&pass->failed))
         return -1;
     for (uint64_t b = 0; b < blocks; b++)
-        if (sink->add(sink->data, pass->cell + b * pass->pixels, cell_samples)) {
+        if (hand_on(pass, sink, b * pass->pixels, cell_samples)) {
             snprintf(pass->error, sizeof pass->error, "out of memory");
             return -1;
         }
@@ -218,11 +225,14 @@ int mcr_render(const struct mcr_scene *scene, const struct mcr_accel *accel, con
     render.start = mcr_wall_seconds();
     pass->core = &render.core;
     pass->pixels = (uint64_t)(film->x1 - film->x0) * (film->y1 - film->y0);
-    pass->cell = calloc(pass->pixels > PASS_CELLS ? pass->pixels : PASS_CELLS, sizeof *pass->cell);
+    uint64_t cells = pass->pixels > PASS_CELLS ? pass->pixels : PASS_CELLS;
+    pass->cell = calloc(cells, sizeof *pass->cell);
+    pass->channels = sink->add_channels ? calloc(cells, sizeof *pass->channels) : NULL;
+    int short_of_memory = !render.arena || !pass->cell || (sink->add_channels && !pass->channels);
     pass->tick = options->progress ? tick : NULL;
     pass->tick_data = &render;
     render.samples_total = pass->pixels * scene->render.spp;
-    if (!render.arena || !pass->cell || prepare(&render, scene, accel, options) || batches_create(&render)) {
+    if (short_of_memory || prepare(&render, scene, accel, options) || batches_create(&render)) {
         snprintf(error, length, "out of memory");
     } else {
         status = run_all(&render, scene, sink, stats);
@@ -235,6 +245,7 @@ int mcr_render(const struct mcr_scene *scene, const struct mcr_accel *accel, con
         mcr_batch_fini(&render.batch[i]);
     free(render.batch);
     free(pass->cell);
+    free(pass->channels);
     mcr_arena_destroy(render.arena);
     stats->wall_seconds = mcr_wall_seconds() - render.start;
     stats->cpu_seconds = mcr_cpu_seconds() - cpu;

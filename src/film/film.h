@@ -8,7 +8,8 @@
  * is at most (4 + 15 * levels) u: below 2e-14 for 1e8 samples.
  *
  * Variance. With independent numbers each sample is a unit, with correlated ones each replicate: the units' central second moment of luminance
- * is merged pair by pair (Chan, Golub and LeVeque 1983). With fewer than two units the variance is unknown.
+ * is merged pair by pair (Chan, Golub and LeVeque 1983). With fewer than two units the variance is unknown. R, G and B have moments of their own
+ * where they are asked for (mcr_film_keep_channels); without, nothing is stored or computed for them.
  */
 #ifndef MCR_FILM_FILM_H
 #define MCR_FILM_FILM_H
@@ -25,12 +26,14 @@ struct mcr_film_level {
     uint32_t children;
     uint64_t samples;
     double *sum[3], *moment; /* pixels each; NULL until first used */
+    double *channel[3];      /* the channels' moments; NULL unless kept, and the samples are independent */
 };
 
 struct mcr_film {
     uint32_t width, height; /* of the crop */
     uint64_t pixels;
     int correlated;         /* units are replicates */
+    int channels;           /* the variance of R, G and B is kept, too */
     uint32_t replicates;
     uint64_t samples;       /* a pixel, so far */
     uint32_t units;         /* finished samples or replicates */
@@ -40,17 +43,24 @@ struct mcr_film {
     uint64_t unit_samples;  /* samples of the finished replicates */
     double *replicate_sum;  /* luminance of the running replicate */
     double *unit_mean, *unit_moment; /* over the finished replicates: mean, and sum of samples * (mean - overall mean)^2 */
+    double *replicate_channel[3], *unit_channel_mean[3], *unit_channel_moment[3]; /* the same for R, G, B; NULL unless kept */
 };
 
 /* NULL when memory is short. */
 struct mcr_film *mcr_film_create(uint32_t width, uint32_t height, int correlated);
 void mcr_film_destroy(struct mcr_film *film);
+/* Asks for mcr_film_channel_variance; before the first cell. Returns 0, or -1 when memory is short. */
+int mcr_film_keep_channels(struct mcr_film *film);
+/* The film as a taker of cells, asking for what it keeps. */
+struct mcr_cell_sink mcr_film_sink(struct mcr_film *film);
 
 /*
  * Adds the next cell of every pixel: cell[pixel], each of `count` samples. Returns 0, or -1 when memory is short (nothing was added then).
  * Cells come in the order of the samples.
  */
 int mcr_film_add(struct mcr_film *film, const struct mcr_cell *cell, uint32_t count);
+/* The same with the channels' moments, which a film of independent samples that keeps channels needs. */
+int mcr_film_add_channels(struct mcr_film *film, const struct mcr_cell *cell, const struct mcr_cell_channels *channels, uint32_t count);
 /* The replicate is complete: its mean becomes a unit. Only for correlated films. */
 void mcr_film_end_replicate(struct mcr_film *film);
 
@@ -58,6 +68,8 @@ void mcr_film_end_replicate(struct mcr_film *film);
 void mcr_film_mean(const struct mcr_film *film, double *rgb);
 /* The variance of every pixel's mean luminance. Returns 0, or -1 if it is unknown (fewer than 2 units): out is untouched then. */
 int mcr_film_variance(const struct mcr_film *film, double *out);
+/* The variance of every pixel's mean in each channel: rgb[3 * pixel]. Returns 0, or -1 if it is unknown, or was not asked for: rgb is untouched then. */
+int mcr_film_channel_variance(const struct mcr_film *film, double *rgb);
 
 /* Figures over the whole picture. */
 struct mcr_film_figures {

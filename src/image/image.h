@@ -11,6 +11,7 @@ struct mcr_image {
     uint32_t width, height, channels;
     double *data;                 /* width * height * channels; owned */
     const char *const *name;      /* channels names, e.g. "R" "G" "B" "albedo.R", or NULL; borrowed, but the image's own after mcr_image_read */
+    uint32_t units;               /* samples or replicates that the variance layers of a file were made of; 0: not known */
 };
 
 /* One attribute of a file's metadata. Text only: 64-bit integers do not survive in every format. */

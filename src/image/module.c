@@ -161,6 +161,7 @@ static double *begin(void *context, const struct mcr_oiio_header *header)
     struct reading *reading = context;
     reading->header = *header;
     reading->image = mcr_image_create_named(header->width, header->height, header->channels, header->channel);
+    if (reading->image) reading->image->units = header->units;
     return reading->image ? reading->image->data : NULL;
 }
 

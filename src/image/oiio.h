@@ -12,7 +12,7 @@
 extern "C" {
 #endif
 
-#define MCR_OIIO_VERSION 1u
+#define MCR_OIIO_VERSION 2u
 
 /* Types of values in rows that are written. Integers are sRGB, floats linear Rec. 709. */
 #define MCR_OIIO_U8 0u
@@ -52,6 +52,8 @@ struct mcr_oiio_header {
     double gamma;               /* MCR_OIIO_GAMMA: linear = encoded ^ gamma */
     int32_t alpha, depth;       /* channels that are linear in any case, -1: none */
     const char *const *channel; /* names, valid during the call */
+    uint32_t units;             /* of the attribute mcrender:units, 0 where it is absent */
+    uint32_t reserved;
 };
 
 struct mcr_oiio_input {

@@ -72,7 +72,7 @@ static int value_follows(struct mcr_parser *parser)
         return 0;
     memcpy(word, parser->token.text, parser->token.text_length);
     word[parser->token.text_length] = '\0';
-    if (!mcr_block_form(MCR_INSIDE_SCENE | MCR_INSIDE_GROUP | MCR_INSIDE_SHAPE, word))
+    if (!mcr_block_form(MCR_INSIDE_SCENE | MCR_INSIDE_GROUP | MCR_INSIDE_SHAPE | MCR_INSIDE_STUDY, word))
         return 1;
     mark = mcr_mark(parser);
     parser->quiet++;
@@ -105,7 +105,9 @@ static void read_setting(struct mcr_parser *parser, struct mcr_block *block, con
         if (parser->token.kind != TOKEN_WORD && parser->token.kind != '}')
             mcr_panic(parser);
     } else {
+        parser->words = block->has_words;
         item.value = mcr_value_read(parser);
+        parser->words = 0;
     }
     if (parser->panic)
         mcr_recover(parser, block->inside);
@@ -254,7 +256,7 @@ static void read_include(struct mcr_parser *parser, struct mcr_block *block)
 /* ---- blocks ---- */
 
 /* Content that was refused is read with this form, for the sake of its `let`s and brackets. */
-static const struct mcr_block_form unknown_form = { "", 0, MCR_INSIDE_UNKNOWN, 0, 0, 0 };
+static const struct mcr_block_form unknown_form = { "", 0, MCR_INSIDE_UNKNOWN, 0, 0, 0, 0 };
 
 /* The name or the kind. */
 static const char *read_part(struct mcr_parser *parser, struct mcr_place *place)
@@ -314,6 +316,7 @@ static void not_closed(struct mcr_parser *parser, const struct mcr_block *block)
 static void read_content(struct mcr_parser *parser, struct mcr_block *parent, const struct mcr_block_form *form, struct mcr_item *item, int opened)
 {
     struct mcr_block block = { .parent = parent, .word = form->word, .inside = form->inside, .open = here(parser), .file = parser->file };
+    block.has_words = form->has_words != 0;
     block.indent = parser->item_first ? item->place.column : 0;
     if (!opened) {
         block.open = item->place;
@@ -624,7 +627,7 @@ const struct mcr_item *mcr_parse_text(struct mcr_arena *arena, struct mcr_diagno
     return root;
 }
 
-const struct mcr_value *mcr_parse_value(struct mcr_arena *arena, struct mcr_diagnostics *diagnostics, const char *name, const char *text)
+static const struct mcr_value *parse_option(struct mcr_arena *arena, struct mcr_diagnostics *diagnostics, const char *name, const char *text, int list)
 {
     struct mcr_parser parser;
     struct mcr_file file = { .directory = "" };
@@ -638,10 +641,20 @@ const struct mcr_value *mcr_parse_value(struct mcr_arena *arena, struct mcr_diag
         parser.file = &file;
         mcr_lexer_start(&parser.lexer, file.source, 0);
         mcr_next(&parser);
-        *value = mcr_whole_value_read(&parser, 0);
+        *value = list ? mcr_whole_list_read(&parser) : mcr_whole_value_read(&parser, 0);
     }
     parser_fini(&parser);
     return file.source && value && value->kind != MCR_VALUE_ERROR ? value : NULL;
+}
+
+const struct mcr_value *mcr_parse_list(struct mcr_arena *arena, struct mcr_diagnostics *diagnostics, const char *name, const char *text)
+{
+    return parse_option(arena, diagnostics, name, text, 1);
+}
+
+const struct mcr_value *mcr_parse_value(struct mcr_arena *arena, struct mcr_diagnostics *diagnostics, const char *name, const char *text)
+{
+    return parse_option(arena, diagnostics, name, text, 0);
 }
 
 uint64_t mcr_parse_hash(const struct mcr_item *root)

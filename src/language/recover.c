@@ -72,7 +72,7 @@ static const struct mcr_block_form *form_of(const struct mcr_token *token)
     char word[MCR_WORD_LIMIT + 1];
     memcpy(word, token->text, token->text_length);
     word[token->text_length] = '\0';
-    return mcr_block_form(MCR_INSIDE_SCENE | MCR_INSIDE_GROUP, word);
+    return mcr_block_form(MCR_INSIDE_SCENE | MCR_INSIDE_GROUP | MCR_INSIDE_STUDY, word);
 }
 
 int mcr_block_follows(struct mcr_parser *parser)

@@ -12,7 +12,7 @@
 
 enum mcr_value_kind {
     MCR_VALUE_NUMBER, /* number; finite */
-    MCR_VALUE_TUPLE,  /* ( a, b, … ): item[count], numbers, tuples and strings; a colour from srgb() or hex() is a tuple of 3 numbers */
+    MCR_VALUE_TUPLE,  /* ( a, b, … ): item[count], numbers, tuples and strings, in some blocks names and calls, too; a colour from srgb() or hex() is a tuple of 3 numbers */
     MCR_VALUE_STRING, /* text */
     MCR_VALUE_NAME,   /* a bare word: text. Where a `let` of that name is in force, `bound` is its value: NUMBER, TUPLE, STRING or ERROR */
     MCR_VALUE_CALL,   /* text ( argument, … ): argument[count] */
@@ -81,6 +81,9 @@ const struct mcr_item *mcr_parse_text(struct mcr_arena *arena, struct mcr_diagno
                                       const char *text, size_t length, struct mcr_definition *definitions, uint32_t definition_count);
 /* One value, as on the command line: name is the option's, e.g. "--sampler". NULL after an error. */
 const struct mcr_value *mcr_parse_value(struct mcr_arena *arena, struct mcr_diagnostics *diagnostics, const char *name, const char *text);
+
+/* One or more values with commas between them: a tuple, in which names and calls may stand; `(a, b)` is a tuple in it. NULL after an error. */
+const struct mcr_value *mcr_parse_list(struct mcr_arena *arena, struct mcr_diagnostics *diagnostics, const char *name, const char *text);
 
 /* FNV-1a 64 over the bytes of all sources in the order they were read, and the definitions: identifies the scene in metadata. */
 uint64_t mcr_parse_hash(const struct mcr_item *root);

@@ -3,7 +3,8 @@
  * Values: numbers, strings, names, calls, brackets.
  *
  * Brackets around one number group; around anything else they make a tuple: ((1, 2, 3)) is a tuple of one tuple. A tuple holds numbers,
- * tuples and strings; names in it are those of `let` and are replaced. Alone, a name stays a name, with what a `let` binds it to.
+ * tuples and strings; names in it are those of `let` and are replaced. In the settings of some blocks (words.c) it may hold other names and calls
+ * besides. Alone, a name stays a name, with what a `let` binds it to.
  *
  * A call is a word with '(' behind it. In it, a word with '=' behind it begins a named argument; any other word is a child. A '(' right
  * behind a child's word always opens the child's own arguments. What then stands before ',' or ')' is its weight, a number expression that
@@ -109,7 +110,8 @@ static struct mcr_value brackets(struct mcr_parser *parser)
         struct mcr_value value = mcr_expression(parser);
         if (parser->panic)
             break;
-        mcr_plain(parser, &value);
+        if (!parser->words || (value.kind == MCR_VALUE_NAME && value.bound))
+            mcr_plain(parser, &value);
         good &= value.kind != MCR_VALUE_ERROR;
         if (!mcr_vector_add(parser, vector, &value, sizeof value))
             break;
@@ -322,9 +324,9 @@ struct mcr_value mcr_plain_value_read(struct mcr_parser *parser)
     return value;
 }
 
-struct mcr_value mcr_whole_value_read(struct mcr_parser *parser, int plain)
+/* Nothing may follow: else the value becomes an error. */
+static struct mcr_value whole(struct mcr_parser *parser, struct mcr_value value)
 {
-    struct mcr_value value = plain ? mcr_plain_value_read(parser) : mcr_value_read(parser);
     char text[80];
     if (!parser->panic && parser->token.kind != TOKEN_END) {
         mcr_report(parser->diagnostics, MCR_ERROR, mcr_token_place(parser, &parser->token), "unexpected %s after the value, expected the end",
@@ -333,4 +335,35 @@ struct mcr_value mcr_whole_value_read(struct mcr_parser *parser, int plain)
     }
     parser->panic = 0;
     return value;
+}
+
+struct mcr_value mcr_whole_value_read(struct mcr_parser *parser, int plain)
+{
+    return whole(parser, plain ? mcr_plain_value_read(parser) : mcr_value_read(parser));
+}
+
+struct mcr_value mcr_whole_list_read(struct mcr_parser *parser)
+{
+    struct mcr_value result = { .kind = MCR_VALUE_TUPLE, .place = mcr_token_place(parser, &parser->token), .text = "" };
+    struct mcr_vector *vector = &parser->values[0];
+    int good = 1;
+
+    parser->words = 1;
+    for (vector->count = 0;;) {
+        struct mcr_value value = mcr_value_read(parser);
+        good &= value.kind != MCR_VALUE_ERROR && mcr_vector_add(parser, vector, &value, sizeof value);
+        if (!good || parser->panic || parser->token.kind != ',')
+            break;
+        mcr_next(parser);
+    }
+    parser->words = 0;
+    if (good)
+        result = whole(parser, result);
+    parser->panic = 0;
+    if (!good || parser->fatal || result.kind == MCR_VALUE_ERROR)
+        return mcr_error_value(result.place);
+    result.place.length = 1;
+    result.count = (uint32_t)vector->count;
+    result.item = mcr_vector_take(parser, vector, sizeof result);
+    return result.item ? result : mcr_error_value(result.place);
 }

@@ -7,20 +7,22 @@
 #define PLACED (ANYWHERE | MCR_INSIDE_SHAPE)
 
 static const struct mcr_block_form forms[] = {
-    /* word        within    inside               name kind single */
-    { "camera",    ANYWHERE, MCR_INSIDE_SETTINGS, 0,   1,   1 },
-    { "film",      ANYWHERE, MCR_INSIDE_SETTINGS, 0,   0,   1 },
-    { "render",    ANYWHERE, MCR_INSIDE_SETTINGS, 0,   0,   1 },
-    { "material",  ANYWHERE, MCR_INSIDE_SETTINGS, 1,   1,   0 },
-    { "group",     ANYWHERE, MCR_INSIDE_GROUP,    0,   0,   0 },
-    { "transform", PLACED,   MCR_INSIDE_SETTINGS, 0,   0,   0 },
-    { "plane",     ANYWHERE, MCR_INSIDE_SHAPE,    0,   0,   0 },
-    { "sphere",    ANYWHERE, MCR_INSIDE_SHAPE,    0,   0,   0 },
-    { "quad",      ANYWHERE, MCR_INSIDE_SHAPE,    0,   0,   0 },
-    { "disk",      ANYWHERE, MCR_INSIDE_SHAPE,    0,   0,   0 },
-    { "box",       ANYWHERE, MCR_INSIDE_SHAPE,    0,   0,   0 },
-    { "triangle",  ANYWHERE, MCR_INSIDE_SHAPE,    0,   0,   0 },
-    { "mesh",      ANYWHERE, MCR_INSIDE_SHAPE,    0,   0,   0 },
+    /* word        within    inside               name kind single words */
+    { "camera",    ANYWHERE, MCR_INSIDE_SETTINGS, 0,   1,   1,    0 },
+    { "film",      ANYWHERE, MCR_INSIDE_SETTINGS, 0,   0,   1,    0 },
+    { "render",    ANYWHERE, MCR_INSIDE_SETTINGS, 0,   0,   1,    1 },
+    { "study",     ANYWHERE, MCR_INSIDE_STUDY,    0,   0,   1,    1 },
+    { "reference", MCR_INSIDE_STUDY, MCR_INSIDE_SETTINGS, 0, 0, 0, 1 },
+    { "material",  ANYWHERE, MCR_INSIDE_SETTINGS, 1,   1,   0,    0 },
+    { "group",     ANYWHERE, MCR_INSIDE_GROUP,    0,   0,   0,    0 },
+    { "transform", PLACED,   MCR_INSIDE_SETTINGS, 0,   0,   0,    0 },
+    { "plane",     ANYWHERE, MCR_INSIDE_SHAPE,    0,   0,   0,    0 },
+    { "sphere",    ANYWHERE, MCR_INSIDE_SHAPE,    0,   0,   0,    0 },
+    { "quad",      ANYWHERE, MCR_INSIDE_SHAPE,    0,   0,   0,    0 },
+    { "disk",      ANYWHERE, MCR_INSIDE_SHAPE,    0,   0,   0,    0 },
+    { "box",       ANYWHERE, MCR_INSIDE_SHAPE,    0,   0,   0,    0 },
+    { "triangle",  ANYWHERE, MCR_INSIDE_SHAPE,    0,   0,   0,    0 },
+    { "mesh",      ANYWHERE, MCR_INSIDE_SHAPE,    0,   0,   0,    0 },
 };
 
 const struct mcr_block_form *mcr_block_form(unsigned inside, const char *word)

@@ -11,7 +11,8 @@ enum mcr_inside {
     MCR_INSIDE_GROUP = 2,
     MCR_INSIDE_SHAPE = 4,
     MCR_INSIDE_SETTINGS = 8, /* blocks of settings alone */
-    MCR_INSIDE_UNKNOWN = 16  /* a block that was refused: its content is read, but not judged */
+    MCR_INSIDE_UNKNOWN = 16, /* a block that was refused: its content is read, but not judged */
+    MCR_INSIDE_STUDY = 32
 };
 
 struct mcr_block_form {
@@ -20,6 +21,7 @@ struct mcr_block_form {
     unsigned inside;  /* what its content is */
     unsigned has_name, has_kind;
     unsigned is_single; /* a scene has one: where a bracket is missing, this word is outside of any group */
+    unsigned has_words; /* tuples in its settings may hold names and calls */
 };
 
 /* The form that `word` opens within `inside`, or NULL: it is a setting there, or nothing. */

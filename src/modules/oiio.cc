@@ -164,6 +164,14 @@ bool transfer(const OIIO::ImageSpec &spec, mcr_oiio_header &header, std::string 
     return OIIO::Strutil::istarts_with(space, "gamma") && header.gamma > 0.1 && header.gamma < 10;
 }
 
+/* How many samples or replicates a variance layer was made of, 0 where the file does not say. */
+uint32_t units(const OIIO::ImageSpec &spec)
+{
+    const std::string text = spec.get_string_attribute("mcrender:units");
+    if (text.empty() || text.size() > 9 || text.find_first_not_of("0123456789") != std::string::npos) return 0;
+    return static_cast<uint32_t>(std::stoul(text));
+}
+
 /* Colours of other primaries would be read as wrong ones. 1e-3 allows for the roundings of Rec. 709 that are in use. */
 bool primaries_differ(const OIIO::ImageSpec &spec)
 {
@@ -221,6 +229,7 @@ int32_t read(const mcr_oiio_input *input, char *error, uint64_t length)
         std::vector<const char *> names;
         for (int c = 0; c < spec.nchannels; c++) names.push_back(spec.channelnames[size_t(c)].c_str());
         header.channel = names.data();
+        header.units = units(spec);
         double *values = input->begin(input->context, &header);
         if (!values) return fail(error, length, "not enough memory");
         if (!reader->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::DOUBLE, values)) return fail(error, length, reader->geterror());

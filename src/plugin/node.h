@@ -45,6 +45,17 @@ struct mcr_sampler {
     struct mcr_node *directions;
     const char *expression;                      /* printed back in normal form, all weights written */
     int correlated;                              /* any source says so */
+    uint32_t quirks;                             /* bits: those of struct mcr_quirks that a node has, by whomever set */
+};
+
+/*
+ * Quirks by name, for nodes that have a parameter `compat` (a choice): one that the expression leaves alone takes the last of its words that is
+ * wanted, if any.
+ */
+struct mcr_quirks {
+    const char *const *name;
+    uint32_t count;  /* at most 32 */
+    uint32_t wanted; /* bits */
 };
 
 /* The host table for creation: report, child_techniques and has_lights work, the rest returns MCR_E_UNSUPPORTED. */
@@ -62,6 +73,9 @@ int mcr_material_traits(const struct mcr_node *material, struct mcr_diagnostics 
 /* planned: samples per pixel and replicate. has_lights: whether the scene has emitters that can be sampled. */
 struct mcr_sampler *mcr_sampler_create(struct mcr_arena *arena, struct mcr_diagnostics *diagnostics, struct mcr_registry *registry,
                                        const struct mcr_value *expression, uint32_t planned, int has_lights);
+/* The same with quirks that the scene asks for. */
+struct mcr_sampler *mcr_sampler_create_with(struct mcr_arena *arena, struct mcr_diagnostics *diagnostics, struct mcr_registry *registry,
+                                            const struct mcr_value *expression, uint32_t planned, int has_lights, const struct mcr_quirks *quirks);
 /* Calls the plugins' destroy (memory is the arena's). NULL is allowed. */
 void mcr_sampler_destroy(struct mcr_sampler *sampler);
 void mcr_material_destroy(struct mcr_node *material);

@@ -17,6 +17,8 @@ struct builder {
     struct mcr_registry *registry;
     uint32_t planned, nodes;
     int has_lights;
+    const struct mcr_quirks *quirks;
+    uint32_t taken; /* bits: quirks that a node has */
 };
 
 static struct mcr_node *build(struct builder *builder, const struct mcr_value *value, uint32_t depth, const struct mcr_descriptor *parent);
@@ -82,6 +84,58 @@ static int read_arguments(struct builder *builder, const struct mcr_value *value
     return wrong ? -1 : 0;
 }
 
+/* ---- the parameter `compat` ---- */
+
+/* The place of the choice `compat` in a plugin's table, or parameter_count. */
+static uint32_t find_compat(const struct mcr_descriptor *descriptor)
+{
+    uint32_t k = 0;
+
+    while (k < descriptor->parameter_count && (mcr_descriptor_parameter(descriptor, k)->type != MCR_TYPE_CHOICE ||
+                                               strcmp(mcr_descriptor_parameter(descriptor, k)->name, "compat") != 0))
+        k++;
+    return k;
+}
+
+/* Has a node's `compat` set to the last of its words that is wanted, unless the expression set it. `value` must live as long as the settings. */
+static void want_quirk(const struct builder *builder, const struct mcr_node *node, struct mcr_setting *setting, uint32_t *settings,
+                       struct mcr_value *value)
+{
+    uint32_t k = find_compat(node->descriptor);
+    char word[MCR_MAX_WORD + 1];
+    const char *choices;
+
+    if (k == node->descriptor->parameter_count)
+        return;
+    for (uint32_t s = 0; s < *settings; s++)
+        if (!strcmp(setting[s].name, "compat"))
+            return;
+    choices = mcr_descriptor_parameter(node->descriptor, k)->choices;
+    *value = (struct mcr_value){.kind = MCR_VALUE_NAME, .place = node->place};
+    for (uint32_t c = 0; c < mcr_choice_count(choices); c++) {
+        mcr_choice_word(choices, c, word);
+        for (uint32_t q = 0; q < builder->quirks->count; q++)
+            if (builder->quirks->wanted & 1u << q && !strcmp(builder->quirks->name[q], word))
+                value->text = builder->quirks->name[q];
+    }
+    if (value->text)
+        setting[(*settings)++] = (struct mcr_setting){"compat", node->place, value};
+}
+
+/* Notes the quirk that a node has. */
+static void take_quirk(struct builder *builder, const struct mcr_node *node)
+{
+    uint32_t k = find_compat(node->descriptor);
+    char word[MCR_MAX_WORD + 1];
+
+    if (k == node->descriptor->parameter_count)
+        return;
+    mcr_choice_word(mcr_descriptor_parameter(node->descriptor, k)->choices, (uint32_t)node->values.number[3 * k], word);
+    for (uint32_t q = 0; q < builder->quirks->count; q++)
+        if (!strcmp(builder->quirks->name[q], word))
+            builder->taken |= 1u << q;
+}
+
 /* The descriptor of a node's word, where its kind may stand. NULL after an error. */
 static const struct mcr_descriptor *find_word(struct builder *builder, const struct mcr_value *value, uint32_t depth,
                                               const struct mcr_descriptor *parent, const char **path)
@@ -120,13 +174,14 @@ static struct mcr_node *build(struct builder *builder, const struct mcr_value *v
     const struct mcr_descriptor *descriptor = find_word(builder, value, depth, parent, &path);
     struct mcr_setting *setting;
     struct mcr_node *node;
+    struct mcr_value quirk;
     uint32_t settings = 0;
     int wrong;
 
     if (!descriptor)
         return NULL;
     node = mcr_arena_alloc(builder->arena, 1, sizeof *node);
-    setting = mcr_arena_alloc(builder->arena, value->kind == MCR_VALUE_CALL ? value->count : 0, sizeof *setting);
+    setting = mcr_arena_alloc(builder->arena, (value->kind == MCR_VALUE_CALL ? (uint64_t)value->count : 0) + 1, sizeof *setting);
     if (!node || !setting) {
         mcr_report(builder->diagnostics, MCR_ERROR, value->place, "out of memory");
         return NULL;
@@ -135,10 +190,13 @@ static struct mcr_node *build(struct builder *builder, const struct mcr_value *v
     node->path = path;
     node->place = value->place;
     wrong = read_arguments(builder, value, depth, node, setting, &settings);
+    want_quirk(builder, node, setting, &settings, &quirk);
     wrong |= mcr_values_read(builder->arena, builder->diagnostics, descriptor, setting, settings, value->place, 0, &node->values);
     if (!wrong && mcr_node_instantiate(node, builder->diagnostics, builder->planned, builder->has_lights) == 0) {
-        if (descriptor->kind != MCR_KIND_DIRECTIONS || mcr_node_techniques(node, builder->diagnostics, builder->has_lights) == 0)
+        if (descriptor->kind != MCR_KIND_DIRECTIONS || mcr_node_techniques(node, builder->diagnostics, builder->has_lights) == 0) {
+            take_quirk(builder, node);
             return node;
+        }
         mcr_node_destroy(node, 1);
         return NULL;
     }
@@ -229,7 +287,15 @@ static struct mcr_node *build_independent(struct builder *builder, struct mcr_pl
 struct mcr_sampler *mcr_sampler_create(struct mcr_arena *arena, struct mcr_diagnostics *diagnostics, struct mcr_registry *registry,
                                        const struct mcr_value *expression, uint32_t planned, int has_lights)
 {
-    struct builder builder = {arena, diagnostics, registry, planned, 0, has_lights};
+    static const struct mcr_quirks none;
+
+    return mcr_sampler_create_with(arena, diagnostics, registry, expression, planned, has_lights, &none);
+}
+
+struct mcr_sampler *mcr_sampler_create_with(struct mcr_arena *arena, struct mcr_diagnostics *diagnostics, struct mcr_registry *registry,
+                                            const struct mcr_value *expression, uint32_t planned, int has_lights, const struct mcr_quirks *quirks)
+{
+    struct builder builder = {arena, diagnostics, registry, planned, 0, has_lights, quirks, 0};
     struct mcr_sampler *sampler = mcr_arena_alloc(arena, 1, sizeof *sampler);
     struct mcr_node *root = build(&builder, expression, 1, NULL);
 
@@ -245,6 +311,7 @@ struct mcr_sampler *mcr_sampler_create(struct mcr_arena *arena, struct mcr_diagn
         mcr_node_destroy(root, 1);
         return NULL;
     }
+    sampler->quirks = builder.taken;
     return sampler;
 }
 

@@ -134,7 +134,8 @@ static const struct mcr_item *single(struct mcr_build *build, const struct mcr_i
 
 static void build_all(struct mcr_build *build, const struct mcr_item *root)
 {
-    const uint32_t top = SHAPES | ROLE(MCR_BLOCK_CAMERA) | ROLE(MCR_BLOCK_FILM) | ROLE(MCR_BLOCK_RENDER) | ROLE(MCR_BLOCK_MATERIAL);
+    const uint32_t top = SHAPES | ROLE(MCR_BLOCK_CAMERA) | ROLE(MCR_BLOCK_FILM) | ROLE(MCR_BLOCK_RENDER) | ROLE(MCR_BLOCK_MATERIAL) |
+                         ROLE(MCR_BLOCK_STUDY);
     const struct mcr_item *camera = single(build, root, "camera");
     struct mcr_transform to_camera;
     for (uint32_t i = 0; i < root->count; i++)
@@ -160,6 +161,7 @@ static void build_all(struct mcr_build *build, const struct mcr_item *root)
     if (mcr_diagnostics_errors(build->diagnostics) == 0)
         mcr_build_render_space(build);
     mcr_build_sampler(build);
+    mcr_build_study(build, single(build, root, "study"));
 }
 
 struct mcr_scene *mcr_scene_build(struct mcr_arena *arena, struct mcr_diagnostics *diagnostics, struct mcr_registry *registry,

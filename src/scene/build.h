@@ -30,7 +30,7 @@ struct mcr_build {
 
     const struct mcr_value *sampler;       /* expression, or NULL */
     uint32_t replicates;                   /* as set, 0 if not */
-    struct mcr_place replicates_place;
+    struct mcr_place replicates_place, compat_place;
     struct mcr_place camera_place;
 };
 
@@ -88,6 +88,8 @@ int mcr_read_numbers(struct mcr_build *build, const struct mcr_value *value, con
 /* The items of a list of tuples, also where the list has one item only and its parentheses stand for nothing. -1 after an error. */
 int mcr_read_list(struct mcr_build *build, const struct mcr_settings *settings, uint32_t index, const struct mcr_value **item,
                   uint32_t *count);
+/* compat.c: the quirks that setting `index` names; 0 if it is not given. Mistakes are recorded. */
+uint32_t mcr_read_compat(struct mcr_build *build, const struct mcr_settings *settings, uint32_t index);
 /* Records that `value` is of another kind than `form` says. Returns -1. */
 int mcr_wrong_kind(struct mcr_build *build, const struct mcr_value *value, const char *name, const char *of, const char *form);
 /* "0.5", "a tuple of 2", ... */
@@ -101,6 +103,12 @@ void mcr_build_film(struct mcr_build *build, const struct mcr_item *block);
 void mcr_build_render(struct mcr_build *build, const struct mcr_item *block);
 /* After everything else: needs has_lights. */
 void mcr_build_sampler(struct mcr_build *build);
+
+/* study.c: last of all, as it makes samplers; block NULL: only what options ask for. */
+void mcr_build_study(struct mcr_build *build, const struct mcr_item *block);
+/* Makes a sampler as a trial, as the scene would have it for so many samples. Its expression in normal form, without what `compat` fills in;
+ * NULL after an error. */
+const char *mcr_build_try_sampler(struct mcr_build *build, const struct mcr_value *expression, uint32_t spp);
 
 void mcr_build_materials(struct mcr_build *build, const struct mcr_item *root);
 /* The number of the material that a shape names; -1 after an error. */

@@ -35,7 +35,7 @@ static void read_filter(struct mcr_build *build, const struct mcr_settings *sett
 static void check_crop(struct mcr_build *build, struct mcr_place place, const char *option)
 {
     struct mcr_film_settings *film = &build->scene->film;
-    uint64_t pixels;
+    uint64_t pixels, bytes = MCR_FILM_BYTES_PER_PIXEL;
     if (film->x0 >= film->x1 || film->y0 >= film->y1) {
         mcr_error(build, place, "%s is empty: expected x0 < x1 and y0 < y1", option);
         return;
@@ -46,10 +46,12 @@ static void check_crop(struct mcr_build *build, struct mcr_place place, const ch
         return;
     }
     pixels = (uint64_t)(film->x1 - film->x0) * (film->y1 - film->y0);
-    if (pixels > MCR_FILM_MEMORY_LIMIT / MCR_FILM_BYTES_PER_PIXEL)
+    if (build->overrides && build->overrides->channel_variance)
+        bytes += MCR_FILM_CHANNEL_BYTES_PER_PIXEL;
+    if (pixels > MCR_FILM_MEMORY_LIMIT / bytes)
         mcr_error(build, place, "a film of %u x %u pixels needs %llu MiB, at most 1024 MiB are allowed: render it in parts with 'crop'",
                   film->x1 - film->x0, film->y1 - film->y0,
-                  (unsigned long long)((pixels * MCR_FILM_BYTES_PER_PIXEL + (1 << 20) - 1) >> 20));
+                  (unsigned long long)((pixels * bytes + (1 << 20) - 1) >> 20));
 }
 
 void mcr_build_film(struct mcr_build *build, const struct mcr_item *block)

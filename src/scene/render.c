@@ -60,11 +60,36 @@ static void override(struct mcr_build *build)
         render->accel = over->accel;
     if (over->has_batch)
         render->batch = over->batch;
+    if (over->has_roulette)
+        render->roulette = over->roulette;
+    if (over->has_roulette_from)
+        render->roulette_from = over->roulette_from;
+    if (over->has_compat) {
+        render->compat = over->compat;
+        build->compat_place = (struct mcr_place){ 0 };
+    }
+    if (over->has_replicates) {
+        build->replicates = over->replicates;
+        build->replicates_place = (struct mcr_place){ 0 };
+    }
     if (over->sampler) {
         build->sampler = mcr_parse_value(build->arena, build->diagnostics, "--sampler", over->sampler);
         if (build->sampler)
             build->scene->sampler_place = build->sampler->place;
     }
+}
+
+/* Roulette weights paths up, so that more of them are clamped. The founding study has none: it is off with `clamp`, unless it was asked for. */
+static void clamp_roulette(struct mcr_build *build, int in_scene)
+{
+    struct mcr_render_settings *render = &build->scene->render;
+    if (!(render->compat & MCR_COMPAT_CLAMP) || !render->roulette)
+        return;
+    if (!in_scene && !(build->overrides && build->overrides->has_roulette))
+        render->roulette = 0;
+    else
+        mcr_report(build->diagnostics, MCR_WARNING, build->compat_place,
+                   "compat 'clamp' clamps paths that roulette has weighted up: 'roulette off' is what the founding study does");
 }
 
 void mcr_build_render(struct mcr_build *build, const struct mcr_item *block)
@@ -88,6 +113,8 @@ void mcr_build_render(struct mcr_build *build, const struct mcr_item *block)
     render->mis_power = number_of(build, &settings, RENDER_MIS) == 1;
     mcr_read_colour(build, &settings, RENDER_BACKGROUND, render->background);
     read_roulette(build, &settings);
+    render->compat = mcr_read_compat(build, &settings, RENDER_COMPAT);
+    build->compat_place = settings.value[RENDER_COMPAT] ? settings.value[RENDER_COMPAT]->place : (struct mcr_place){ 0 };
     build->replicates = (uint32_t)number_of(build, &settings, RENDER_REPLICATES);
     if (settings.value[RENDER_REPLICATES])
         build->replicates_place = settings.value[RENDER_REPLICATES]->place;
@@ -95,6 +122,7 @@ void mcr_build_render(struct mcr_build *build, const struct mcr_item *block)
     if (build->sampler)
         build->scene->sampler_place = build->sampler->place;
     override(build);
+    clamp_roulette(build, settings.value[RENDER_ROULETTE] != NULL);
     if (build->replicates > render->spp) {
         mcr_error(build, build->replicates_place, "%u replicates need at least %u samples per pixel, spp is %u", build->replicates,
                   build->replicates, render->spp);
@@ -153,13 +181,31 @@ static uint32_t planned(const struct mcr_render_settings *render)
 static int create_sampler(struct mcr_build *build, int has_lights)
 {
     struct mcr_scene *scene = build->scene;
+    struct mcr_quirks quirks = { mcr_compat_name, MCR_COMPAT_COUNT, scene->render.compat };
     mcr_sampler_destroy(scene->sampler);
-    scene->sampler = mcr_sampler_create(build->arena, build->diagnostics, build->registry, build->sampler, planned(&scene->render),
-                                        has_lights);
+    scene->sampler = mcr_sampler_create_with(build->arena, build->diagnostics, build->registry, build->sampler, planned(&scene->render),
+                                             has_lights, &quirks);
     return scene->sampler ? 0 : -1;
 }
 
-void mcr_build_sampler(struct mcr_build *build)
+/* Leaves those quirks in force that find something to act on, with those that the sampler's expression asks for. */
+static void settle_compat(struct mcr_build *build)
+{
+    struct mcr_scene *scene = build->scene;
+    uint32_t always = MCR_COMPAT_CLAMP | MCR_COMPAT_BACKGROUND_AT_LIMIT, asked = scene->render.compat, acts = scene->sampler->quirks;
+    if (scene->camera.kind == MCR_CAMERA_THIN_LENS && scene->camera.lens_radius > 0)
+        always |= MCR_COMPAT_DISK_POLAR;
+    scene->camera.lens_polar = (asked & always & MCR_COMPAT_DISK_POLAR) != 0;
+    acts |= asked & always;
+    for (uint32_t i = 0; i < MCR_COMPAT_COUNT; i++)
+        if (asked & ~acts & 1u << i)
+            mcr_report(build->diagnostics, MCR_WARNING, build->compat_place, "compat '%s' has no effect here: nothing in this scene draws that way",
+                       mcr_compat_name[i]);
+    scene->render.compat = acts;
+}
+
+/* The sampler, and how many replicates: what is settled last. */
+static void build_sampler(struct mcr_build *build)
 {
     struct mcr_scene *scene = build->scene;
     struct mcr_render_settings *render = &scene->render;
@@ -182,4 +228,20 @@ void mcr_build_sampler(struct mcr_build *build)
     else if (first_lights == lights)
         return;
     create_sampler(build, lights);
+}
+
+void mcr_build_sampler(struct mcr_build *build)
+{
+    build_sampler(build);
+    if (build->scene->sampler)
+        settle_compat(build);
+}
+
+const char *mcr_build_try_sampler(struct mcr_build *build, const struct mcr_value *expression, uint32_t spp)
+{
+    int wrong = mcr_diagnostics_errors(build->diagnostics) > 0, lights = build->scene->has_lights || build->planes_emit || wrong;
+    struct mcr_sampler *sampler = mcr_sampler_create(build->arena, build->diagnostics, build->registry, expression, spp, lights);
+    const char *text = sampler && check_lights(build, sampler) == 0 ? sampler->expression : NULL;
+    mcr_sampler_destroy(sampler);
+    return text;
 }

@@ -14,6 +14,7 @@
 #include "language/tree.h"
 #include "plugin/node.h"
 #include "plugin/registry.h"
+#include "scene/study.h"
 
 enum mcr_shape_kind {
     MCR_SHAPE_PLANE,         /* infinite: c a point, n */
@@ -68,6 +69,7 @@ struct mcr_camera {
     double right[3], up[3], forward[3]; /* orthonormal */
     double half_height;                 /* tan(fov/2), or half the height of the orthographic view in render space */
     double lens_radius;                 /* render space; 0: a pinhole */
+    int lens_polar;                     /* compat disk-polar: points of the lens crowd in its middle */
     double focus_distance;              /* render space */
     double world[3];                    /* its position in the world */
 };
@@ -85,6 +87,26 @@ struct mcr_film_settings {
 enum mcr_precision { MCR_PRECISION_DOUBLE };
 enum mcr_accel_kind { MCR_ACCEL_AUTO, MCR_ACCEL_LIST, MCR_ACCEL_BVH };
 
+/* Quirks of the founding study, each of which makes the picture wrong: bits of `compat`. In the order of mcr_compat_name. */
+enum {
+    MCR_COMPAT_CLAMP = 1,               /* what a bounce hands back is clamped to 1 */
+    MCR_COMPAT_BACKGROUND_AT_LIMIT = 2, /* paths that reach the depth limit see the background */
+    MCR_COMPAT_DISK_POLAR = 4,          /* points in the disk by r = u */
+    MCR_COMPAT_SPHERE_SPHERICAL = 8,    /* points in the sphere by the study's algorithm 5 */
+    MCR_COMPAT_FLOOR_SQRT = 16          /* strata: floor(sqrt(spp))^2 samples, divided by spp */
+};
+#define MCR_COMPAT_COUNT 5u
+extern const char *const mcr_compat_name[MCR_COMPAT_COUNT];
+#define MCR_COMPAT_TEXT 96u /* bytes that all names take as a text, with its NUL */
+
+/*
+ * A list as "clamp, disk-polar" (blanks may be left out), or "none". Returns 0, or -1 with the reason in `error`: what is unknown or named twice.
+ * *mask is unchanged then.
+ */
+int mcr_compat_parse(const char *text, uint32_t *mask, char *error, size_t length);
+/* The same list of a mask, in the order of the names; "none" for 0. */
+void mcr_compat_text(uint32_t mask, char text[MCR_COMPAT_TEXT]);
+
 struct mcr_render_settings {
     uint32_t spp;           /* >= 1 */
     uint32_t depth;         /* scattering events; 0: emission only */
@@ -96,6 +118,7 @@ struct mcr_render_settings {
     uint32_t batch;         /* paths in a batch, 0: the default */
     int roulette;           /* on or off */
     uint32_t roulette_from; /* the first bounce (0-based scattering event) at which it may end a path */
+    uint32_t compat;        /* MCR_COMPAT_* in force: what finds nothing to act on in this scene is not among them */
     int mis_power;          /* techniques are combined by the power heuristic instead of the balance heuristic */
     double background[3];
 };
@@ -118,14 +141,21 @@ struct mcr_scene {
     uint32_t dropped;            /* degenerate triangles of meshes, left out */
     int has_lights;              /* bounded shapes emit */
     struct mcr_place sampler_place;
+    const struct mcr_scene_study *study; /* NULL where nothing asks for one */
 };
 
 /* What the command line says over the scene. Members are in force where their `has_` is set or their pointer is not NULL. */
 struct mcr_overrides {
-    int has_spp, has_depth, has_seed, has_threads, has_size, has_crop, has_accel, has_batch;
+    int has_spp, has_depth, has_seed, has_threads, has_size, has_crop, has_accel, has_batch, has_roulette, has_replicates, has_compat;
+    int roulette;
+    uint32_t replicates, compat;
     uint32_t spp, depth, threads, width, height, crop[4], accel, batch;
     uint64_t seed;
     const char *sampler; /* an expression */
+    const struct mcr_study_texts *study; /* NULL: a block `study` is judged if there is one */
+    int has_roulette_from;
+    uint32_t roulette_from;
+    int channel_variance; /* the film is to keep the channels' variances: counts for its memory */
 };
 
 /*

@@ -79,6 +79,41 @@ static const struct mcr_parameter render[] = {
     [RENDER_PRECISION] = CHOICE("precision", "double|single", "Precision of the accelerator."),
     [RENDER_MIS] = CHOICE("mis", "balance|power", "Heuristic by which techniques are combined."),
     [RENDER_BATCH] = ROW("batch", MCR_TYPE_INTEGER, 0, "", 0, 65536, 0, 0, 0, "Paths in a batch; 0 chooses."),
+    [RENDER_COMPAT] = WORD("compat", MCR_WORD_COMPAT, 0, "Known mistakes to make on purpose, so that a study can show what each does; none by default."),
+};
+
+#define WORDS(word, words, text)                                                                                                   \
+    { .size = sizeof(struct mcr_parameter), .type = MCR_WORD_CHOICES, .name = word, .unit = "", .choices = words, .summary = text,     \
+      .min = -FAR, .max = FAR }
+
+static const struct mcr_parameter study[] = {
+    [STUDY_TITLE] = WORD("title", MCR_WORD_TEXT, 0, "Of the report; the scene's file name by default."),
+    [STUDY_SAMPLERS] = WORD("samplers", MCR_WORD_SAMPLERS, 0, "What is compared; the sampler of `render` by default."),
+    [STUDY_SPP] = ROW("spp", MCR_WORD_WHOLES, 0, "", 1, 2147483647.0, 0, 0, 0, "Samples per pixel; those of `render` by default, as in what follows."),
+    [STUDY_DEPTH] = ROW("depth", MCR_WORD_WHOLES, 0, "", 0, 2147483646, 0, 0, 0, "Scattering events of a path at most."),
+    [STUDY_PRECISION] = WORDS("precision", "double|single", "Precisions of the accelerator."),
+    [STUDY_ACCEL] = WORDS("accel", "auto|list|bvh|embree", "Accelerators."),
+    [STUDY_ROULETTE] = WORDS("roulette", "off|on", "Whether paths are ended early; from which event on is said in `render`."),
+    [STUDY_COMPAT] = WORD("compat", MCR_WORD_COMPATS, 0, "Known mistakes to make; a tuple within the tuple makes several at once."),
+    [STUDY_SEEDS] = ROW("seeds", MCR_TYPE_INTEGER, 0, "", 1, 100000, 10, 0, 0, "Independent renders of each cell for its error."),
+    [STUDY_RUNS] = ROW("runs", MCR_TYPE_INTEGER, 0, "", 1, 100000, 10, 0, 0, "Timed renders of each cell; the same renders as for the error."),
+    [STUDY_SEED] = ROW("seed", MCR_TYPE_INTEGER, 0, "", 0, 4503599627370496.0, 1, 0, 0, "Of the first run of each cell; the next has one more."),
+    [STUDY_BASELINE] = WORD("baseline", MCR_WORD_SAMPLER, 0, "The sampler that efficiency is relative to; by default the first that covers the scene."),
+    [STUDY_CONFIDENCE] = ROW("confidence", MCR_TYPE_NUMBER, ABOVE | BELOW, "", 0.5, 1, 0.95, 0, 0, "Of intervals and verdicts."),
+    [STUDY_TARGET] = ROW("target", MCR_TYPE_NUMBER, ABOVE, "", 0, FAR, 0, 0, 0, "Mean square error whose time is asked for; chosen by default."),
+    [STUDY_METRICS] = WORDS("metrics", MCR_METRIC_WORDS, "What is measured; mse psnr snr ssim ms_ssim and relmse by default, mse always."),
+    [STUDY_ENCODING] = CHOICE("encoding", "linear|srgb8", "What the metrics are computed on."),
+    [STUDY_PEAK] = ROW("peak", MCR_TYPE_NUMBER, ABOVE, "", 0, FAR, 0, 0, 0, "Value that counts as white; 1 by default, 255 for srgb8."),
+    [STUDY_OUTPUT] = WORD("output", MCR_WORD_TEXT, 0, "Folder for everything; the scene's name with -study by default."),
+    [STUDY_SIZE] = ROW("size", MCR_WORD_PAIR, 0, "pixels", 1, MCR_FILM_LIMIT, 512, 512, 0, "Width and height of the picture; those of `film` by default."),
+    [STUDY_CROP] = ROW("crop", MCR_WORD_RECTANGLE, 0, "pixels", 0, MCR_FILM_LIMIT, 0, 0, 0, "The part to render; that of `film` by default."),
+};
+static const struct mcr_parameter reference[] = {
+    [REFERENCE_SAMPLER] = WORD("sampler", MCR_WORD_SAMPLER, 0, "By default mixture(cosine 1, light 1) where there is light to sample, else cosine."),
+    [REFERENCE_SPP] = ROW("spp", MCR_TYPE_INTEGER, 0, "", 1, 2147483647.0, 0, 0, 0, "Samples per pixel; by default 16 times the study's most, at least 1024."),
+    [REFERENCE_DEPTH] = ROW("depth", MCR_TYPE_INTEGER, 0, "", 0, 2147483646, 0, 0, 0, "One reference of this depth for all; by default one for each depth."),
+    [REFERENCE_SEED] = ROW("seed", MCR_TYPE_INTEGER, 0, "", 0, 9007199254740992.0, 0, 0, 0, "A seed that no run uses, and 15 that follow it."),
+    [REFERENCE_IMAGE] = WORD("image", MCR_WORD_TEXT, 0, "Or a file that is the reference."),
 };
 
 #define SHAPE                                                                                                                      \
@@ -151,6 +186,7 @@ const struct mcr_block_word mcr_scene_blocks[] = {
     BLOCK("camera", "thinlens", MCR_BLOCK_CAMERA, thinlens, "A camera with depth of field."),
     BLOCK("film", NULL, MCR_BLOCK_FILM, film, "The picture."),
     BLOCK("render", NULL, MCR_BLOCK_RENDER, render, "How it is computed."),
+    BLOCK("study", NULL, MCR_BLOCK_STUDY, study, "What `mcrender study` compares; other commands check it and do without."),
     { "material", NULL, MCR_BLOCK_MATERIAL, 0, NULL, "A named material; its kind is a plugin, whose parameters are its settings." },
     BLOCK("plane", NULL, MCR_BLOCK_SHAPE, plane, "An infinite plane."),
     BLOCK("sphere", NULL, MCR_BLOCK_SHAPE, sphere, "A sphere; its front is outside."),
@@ -161,6 +197,7 @@ const struct mcr_block_word mcr_scene_blocks[] = {
     BLOCK("mesh", NULL, MCR_BLOCK_SHAPE, mesh, "Triangles and quadrilaterals that share vertices."),
     BLOCK("group", NULL, MCR_BLOCK_GROUP, group, "Shapes and groups that are moved together."),
     BLOCK("transform", NULL, MCR_BLOCK_TRANSFORM, transform, "Steps, applied to points in the order of the text."),
+    BLOCK("reference", NULL, MCR_BLOCK_REFERENCE, reference, "What a study measures against."),
 };
 const uint32_t mcr_scene_block_count = COUNT(mcr_scene_blocks);
 
@@ -202,6 +239,12 @@ const char *mcr_word_form(uint32_t type)
         [MCR_WORD_SAMPLER] = "a sampler such as cosine or mixture(cosine 1, light 1)",
         [MCR_WORD_FILTER] = "box, tent or gaussian",
         [MCR_WORD_ROULETTE] = "on, off or on(from=N)",
+        [MCR_WORD_COMPAT] = "none, clamp, background-at-limit, disk-polar, sphere-spherical or floor-sqrt, or a tuple of these",
+        [MCR_WORD_TEXT] = "a text in quotes",
+        [MCR_WORD_SAMPLERS] = "a sampler such as cosine or a tuple of samplers",
+        [MCR_WORD_WHOLES] = "a whole number or a tuple of them",
+        [MCR_WORD_CHOICES] = "a word or a tuple of words",
+        [MCR_WORD_COMPATS] = "none, a quirk such as clamp, or a tuple of these and of tuples",
         [MCR_WORD_TRANSFORM] = "a block transform { ... }",
         [MCR_TYPE_NUMBER] = "a number",
         [MCR_TYPE_INTEGER] = "a whole number",

@@ -31,6 +31,12 @@ enum mcr_word_type {
     MCR_WORD_SAMPLER,     /* a sampler expression */
     MCR_WORD_FILTER,      /* a filter: a name or a call */
     MCR_WORD_ROULETTE,    /* on, off or on(from=N) */
+    MCR_WORD_COMPAT,      /* none, a quirk's name, or a tuple of them */
+    MCR_WORD_TEXT,        /* a string */
+    MCR_WORD_SAMPLERS,    /* a sampler expression, or a tuple of them */
+    MCR_WORD_WHOLES,      /* a whole number, or a tuple of them */
+    MCR_WORD_CHOICES,     /* one of the words of `choices`, or a tuple of them */
+    MCR_WORD_COMPATS,     /* a tuple of what `compat` takes, or one such */
     MCR_WORD_TRANSFORM    /* a block of steps */
 };
 
@@ -38,7 +44,8 @@ enum mcr_word_type {
 const char *mcr_word_form(uint32_t type);
 
 enum mcr_block_role {
-    MCR_BLOCK_CAMERA, MCR_BLOCK_FILM, MCR_BLOCK_RENDER, MCR_BLOCK_MATERIAL, MCR_BLOCK_SHAPE, MCR_BLOCK_GROUP, MCR_BLOCK_TRANSFORM
+    MCR_BLOCK_CAMERA, MCR_BLOCK_FILM, MCR_BLOCK_RENDER, MCR_BLOCK_MATERIAL, MCR_BLOCK_SHAPE, MCR_BLOCK_GROUP, MCR_BLOCK_TRANSFORM,
+    MCR_BLOCK_STUDY, MCR_BLOCK_REFERENCE
 };
 
 /* A block, or a call with named arguments (filters). */
@@ -70,8 +77,15 @@ enum { FILM_SIZE, FILM_CROP, FILM_FILTER };
 enum { FILTER_RADIUS, FILTER_SIGMA };
 enum {
     RENDER_SAMPLER, RENDER_SPP, RENDER_DEPTH, RENDER_SEED, RENDER_THREADS, RENDER_REPLICATES, RENDER_ROULETTE, RENDER_BACKGROUND,
-    RENDER_ACCEL, RENDER_PRECISION, RENDER_MIS, RENDER_BATCH
+    RENDER_ACCEL, RENDER_PRECISION, RENDER_MIS, RENDER_BATCH, RENDER_COMPAT
 };
+enum {
+    STUDY_TITLE, STUDY_SAMPLERS, STUDY_SPP, STUDY_DEPTH, STUDY_PRECISION, STUDY_ACCEL, STUDY_ROULETTE, STUDY_COMPAT, STUDY_SEEDS, STUDY_RUNS, STUDY_SEED,
+    STUDY_BASELINE, STUDY_CONFIDENCE, STUDY_TARGET, STUDY_METRICS, STUDY_ENCODING, STUDY_PEAK, STUDY_OUTPUT, STUDY_SIZE, STUDY_CROP, STUDY_COUNT
+};
+enum { REFERENCE_SAMPLER, REFERENCE_SPP, REFERENCE_DEPTH, REFERENCE_SEED, REFERENCE_IMAGE, REFERENCE_COUNT };
+/* In the order of enum mcr_metric, which belongs to a folder further right; tests/study compares the two. */
+#define MCR_METRIC_WORDS "mse|rmse|mae|relmse|smape|psnr|snr|snr_variance|ssim|ms_ssim|mean_ratio"
 /* The first two settings of every shape. */
 enum { SHAPE_MATERIAL, SHAPE_TRANSFORM };
 enum { PLANE_POINT = 2, PLANE_NORMAL };
@@ -83,10 +97,11 @@ enum { TRIANGLE_A = 2, TRIANGLE_B, TRIANGLE_C, TRIANGLE_NORMALS, TRIANGLE_UV };
 enum { MESH_VERTICES = 2, MESH_FACES, MESH_NORMALS, MESH_UV };
 enum { STEP_TRANSLATE, STEP_ROTATE, STEP_SCALE, STEP_MATRIX, STEP_LOOKAT };
 
-#define MCR_SETTINGS_LIMIT 16u /* no table is longer */
+#define MCR_SETTINGS_LIMIT 24u /* no table is longer */
 #define MCR_EXTENT_LIMIT 1e100 /* magnitude of coordinates and lengths in the world, so that products of three do not overflow */
 #define MCR_FILM_LIMIT 65536u
 #define MCR_FILM_BYTES_PER_PIXEL 56u
+#define MCR_FILM_CHANNEL_BYTES_PER_PIXEL 72u /* more, where it keeps the channels' variances */
 #define MCR_FILM_MEMORY_LIMIT ((uint64_t)1 << 30)
 
 #endif

@@ -159,7 +159,7 @@ keys_told()
 }
 keys_listed() { sed -n '/^\.\\" keys: begin/,/^\.\\" keys: end/p' "$1" | sed -n 's/^\.It Cm //p' | tr ' ' '\n' | grep '^[a-z_]*$' | sort -u; }
 
-for page in mcrender.1 mcrender-scene.5 mcrender-plugin.7; do
+for page in mcrender.1 mcrender-compare.1 mcrender-study.1 mcrender-scene.5 mcrender-plugin.7; do
     [ -f "$srcdir/man/$page" ] || { point 1 "$page exists"; continue; }
     run_page "$srcdir/man/$page"
     run_words "$srcdir/man/$page"

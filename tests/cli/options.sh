@@ -37,6 +37,17 @@ sets replaced accelerator list --accel list
 sets replaced accelerator list --accel auto
 sets replaced instruction_set baseline --isa baseline
 sets replaced batch 64 --batch 64
+sets replaced replicates 3 --replicates 3
+sets "the scene's" roulette false
+sets replaced roulette true --roulette on
+sets replaced roulette true --roulette 'on(from=0)'
+sets replaced roulette false --roulette on --roulette off
+sets "the scene's" compat none
+sets "the scene's" biased false
+sets replaced compat clamp --compat clamp
+sets replaced compat 'clamp, background-at-limit' --compat background-at-limit,clamp
+sets replaced biased true --compat clamp
+sets replaced compat none --compat clamp --compat none
 sets replaced luminance 0.25
 sets replaced luminance 0.5 --set glow=0.5
 sets replaced luminance 0.75 --set 'glow=0.5 + 0.25'
@@ -88,6 +99,13 @@ for bad in -1 1e3 2147483647; do refused "--depth expects a whole number from 0"
 for bad in -1 x 9007199254740993; do refused "--seed expects a whole number from 0" --seed "$bad"; done
 for bad in -1 x 1025; do refused "--threads expects a whole number from 0" --threads "$bad"; done
 for bad in -1 x 65537; do refused "--batch expects a whole number from 0" --batch "$bad"; done
+for bad in 0 -1 x 4097; do refused "--replicates expects a whole number from 1 to 4096" --replicates "$bad"; done
+for bad in yes On 'on(' 'on(from=)' 'on(from=2' 'on(from=-1)' 'on(from=2147483647)' 'on(from=99999999999999999)' 'on(5)' 'off(from=2)'; do
+    refused "--roulette " --roulette "$bad"
+done
+for bad in clam clamp,clamp clamp, none,clamp 'clamp disk-polar'; do refused "--compat " --compat "$bad"; done
+refused "did you mean 'disk-polar'?" --compat disc-polar
+refused "--layers does not know 'varience', did you mean 'variance'?" --layers varience
 for bad in 8 8x 0x8 8x0 8x8x8 8,8 -8x8 8x65537 8X8 '8 x8'; do refused "--size expects WIDTHxHEIGHT" --size "$bad"; done
 for bad in 1,2,3 1,2,3,4,5 a,b,c,d 1,2,3,-4 1x2x3x4; do refused "--crop expects X0,Y0,X1,Y1" --crop "$bad"; done
 for bad in 4,0,4,8 0,4,8,4 5,0,4,8; do refused "--crop $bad is empty" --crop "$bad"; done
@@ -102,7 +120,8 @@ refused "--precision single is not available in this build" --precision single
 refused "--accel embree is not available in this build" --accel embree
 refused "--sampler expects EXPR" --sampler ''
 refused "--report expects FILE" --report=
-for option in -o --spp --depth --seed --threads --sampler --size --crop --precision --accel --isa --batch --set --plugin --report --bits --exposure; do
+for option in -o --spp --depth --seed --threads --sampler --size --crop --precision --accel --isa --batch --replicates --roulette --compat --set --plugin \
+    --layers --report --bits --exposure; do
     refused "$option expects" "$option"
 done
 for option in --quiet --werror --profile --help --version; do refused "$option takes no value" "$option=yes"; done
@@ -162,8 +181,8 @@ for how in "--help" "-h" "check --help" "plugins --help" "--hel"; do
     check "$how: 24 lines of 80 columns" awk 'length > 80 { bad = 1 } END { exit bad || NR > 24 || NR < 10 }' "$TMPDIR/stdout"
     check "$how: nothing on stderr" test ! -s "$TMPDIR/stderr"
 done
-for option in -o --spp --depth --seed --threads --sampler --size --crop --precision --accel --isa --batch --set --plugin --report --profile --bits \
-    --exposure --quiet --werror --help --version; do
+for option in -o --spp --depth --seed --threads --sampler --size --crop --precision --accel --isa --batch --replicates --roulette --compat --set \
+    --plugin --layers --report --profile --bits --exposure --quiet --werror --help --version; do
     check "--help tells $option" grep -q -- "^\(.* \)\?$option " "$TMPDIR/stdout"
 done
 run --version

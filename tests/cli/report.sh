@@ -29,6 +29,15 @@ ends "light alone is incomplete, in spite of --quiet" 0 "warning: this sampler a
 equal "light alone is incomplete, in JSON" "$(value complete light.json)" false
 check "what it misses, in JSON" test -n "$(value missing light.json)"
 
+run glow.scn --compat clamp --quiet -o a.ppm --report biased.json
+ends "a quirk is told, in spite of --quiet" 0 "warning: this picture is biased on purpose: compat clamp"
+equal "a quirk, in JSON" "$(value compat biased.json) $(value biased biased.json)" "clamp true"
+run glow.scn --compat clamp -o a.ppm
+ends "a quirk, in the report" 0 "compat    BIASED on purpose: clamp"
+run glow.scn --compat floor-sqrt -o a.ppm --report none.json
+ends "a quirk that finds nothing is told" 0 "warning: compat 'floor-sqrt' has no effect here"
+equal "it is not in force" "$(value compat none.json) $(value biased none.json)" "none false"
+
 # Radiance 4 is beyond white: every value of the picture. 2^100 is beyond half and 32-bit floats hold it, 2^1000 they do not.
 run glow.scn --set glow=4 -o over.ppm -o over.pfm --report over.json
 ends "clipped values are told" 0 "wrote     over.ppm (192 values beyond the format's range were clipped)"
@@ -109,6 +118,10 @@ else
         'mcrender:coverage: "complete"' 'chromaticities: 0.64, 0.33, 0.3, 0.6, 0.15, 0.06, 0.3127, 0.329' oiio:ColorSpace 'channel list: R, G, B'; do
         check "EXR: $text" grep -qF "$text" described
     done
+    refute "EXR: no quirk" grep -q 'mcrender:compat\|mcrender:biased' described
+    run "$box" --size 16x16 --spp 4 --compat clamp,background-at-limit --quiet -o q.exr
+    $described q.exr >described 2>&1
+    for text in 'mcrender:biased: "true"' 'mcrender:compat: "clamp, background-at-limit"'; do check "EXR: $text" grep -qF "$text" described; done
 fi
 
 # ---- memory ----------------------------------------------------------------------------------------------------------------------------

@@ -4,7 +4,7 @@
 
 picture() # SCENE ARGUMENT...: a PFM, floats as they are, on standard output
 {
-    "$MCRENDER" "$@" --quiet -o "$TMPDIR/picture.pfm" && cat "$TMPDIR/picture.pfm"
+    "$MCRENDER" "$@" --quiet -o "$TMPDIR/picture.pfm" 2>"$TMPDIR/messages" && cat "$TMPDIR/picture.pfm"
 }
 
 isas=baseline
@@ -54,11 +54,31 @@ for scene in "$srcdir"/scenes/*.scn; do
 done
 compare 'cornell-box, light by area' "$srcdir/scenes/cornell-box.scn" --spp 5 --sampler 'mixture(uniform 1, cosine 2, light(by=area) 3)'
 
+quirks=clamp,background-at-limit,disk-polar,sphere-spherical,floor-sqrt
+compare 'spheres-thinlens, every quirk' "$srcdir/scenes/spheres-thinlens.scn" --spp 21 --sampler 'stratified(mixture(cosine 1, light 1))' --compat $quirks
+compare 'cornell-box, quirks' "$srcdir/scenes/cornell-box.scn" --spp 5 --compat clamp,disk-polar
+
 # The film is added up in passes where the pixels are few.
 set -- "$srcdir/scenes/cornell-box.scn" --size 3x3 --spp 40000 --depth 2
 picture "$@" --threads 1 --batch 100 >"$TMPDIR/first.pfm"
 picture "$@" --threads 7 --batch 1000 >"$TMPDIR/other.pfm"
 check '9 pixels, 40000 samples: the same bits for 1 and 7 threads' cmp "$TMPDIR/first.pfm" "$TMPDIR/other.pfm"
+
+# The variance layer, with independent numbers and with replicates. (--accel is named in the file.)
+skipped=
+"$MCRENDER" "$srcdir/scenes/cornell-box.scn" --size 8x8 --spp 2 --quiet -o "$TMPDIR/first.exr" 2>"$TMPDIR/log" || skipped=$(cat "$TMPDIR/log")
+for sampler in 'mixture(cosine 1, light 1)' 'stratified(mixture(cosine 1, light 1))'; do
+    if [ -n "$skipped" ]; then skip "variance layer, $sampler" "$skipped"; continue; fi
+    wrong=
+    for way in "${ways[0]}" "${ways[@]}"; do
+        SOURCE_DATE_EPOCH=1 "$MCRENDER" "$srcdir/scenes/cornell-box.scn" --size 24x20 --spp 37 --depth 8 --layers variance --sampler "$sampler" --quiet \
+            -o "$TMPDIR/other.exr" ${way/--accel bvh/} || wrong="$wrong; no picture"
+        [ "$way" = "${ways[0]}" ] && [ ! -e "$TMPDIR/layer.exr" ] && cp "$TMPDIR/other.exr" "$TMPDIR/layer.exr"
+        cmp -s "$TMPDIR/layer.exr" "$TMPDIR/other.exr" || wrong="$wrong; $way"
+    done
+    rm -f "$TMPDIR/layer.exr"
+    empty "variance layer, $sampler: the same bits for ${#ways[@]} ways to run it" "$wrong"
+done
 
 # And a seed does.
 picture "$srcdir/scenes/cornell-box.scn" --size 64x48 --spp 3 --seed 1 >"$TMPDIR/first.pfm"

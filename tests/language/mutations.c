@@ -95,7 +95,7 @@ static int value_is_sound(const struct mcr_value *value)
         return sound && isfinite(value->number);
     for (uint32_t i = 0; i < value->count && sound; i++) {
         if (value->kind == MCR_VALUE_TUPLE)
-            sound = value_is_sound(&value->item[i]) && value->item[i].kind != MCR_VALUE_NAME && value->item[i].kind != MCR_VALUE_ERROR;
+            sound = value_is_sound(&value->item[i]) && !value->item[i].bound && value->item[i].kind != MCR_VALUE_ERROR;
         else
             sound = value->kind == MCR_VALUE_CALL && value_is_sound(&value->argument[i].value) &&
                     (!value->argument[i].has_weight || value->argument[i].weight.kind == MCR_VALUE_NUMBER);

@@ -169,7 +169,8 @@ int main(void)
     bad("light(by=3)", 1, "--sampler:1:10: error: 'by' of 'light' is a number, expected a word\n");
     bad("light(buy=area)", 1,
         "--sampler:1:7: error: unknown setting 'buy' of 'light', expected by\n--sampler:1:7: note: did you mean 'by'?\n");
-    bad("cosine(n=3)", 1, "--sampler:1:8: error: unknown setting 'n' of 'cosine', expected none: it has no parameters\n");
+    bad("uniform(n=3)", 1, "--sampler:1:9: error: unknown setting 'n' of 'uniform', expected none: it has no parameters\n");
+    bad("cosine(n=3)", 1, "--sampler:1:8: error: unknown setting 'n' of 'cosine', expected compat\n");
     bad("stratified(n=2.5, cosine)", 1, "--sampler:1:14: error: 'n' of 'stratified' is 2.5, expected a whole number\n");
     bad("stratified(n=-1, cosine)", 1, "--sampler:1:14: error: 'n' of 'stratified' is -1, expected 0 to 65536\n");
     bad("stratified(n=2, n=3, cosine)", 1,

@@ -14,11 +14,13 @@ static double *x, *y;
 static uint64_t pixel_key[MOST], path_key[MOST];
 static uint32_t sample[MOST], planned[MOST], bounce[MOST];
 
+static int floor_sqrt; /* what make() sets compat to */
+
 static int32_t make(double n, double m, void **instance)
 {
-    double number[6] = {n, 0, 0, m};
-    uint32_t given[2] = {1, 1};
-    struct mcr_values values = {sizeof values, 2, number, given};
+    double number[9] = {n, 0, 0, m, 0, 0, floor_sqrt};
+    uint32_t given[3] = {1, 1, 1};
+    struct mcr_values values = {sizeof values, 3, number, given};
     struct mcr_creation with = {.size = sizeof with, .values = &values, .spp = 16};
 
     context.message[0] = 0;
@@ -126,6 +128,17 @@ static void test_given(uint32_t n, uint32_t m, uint32_t spp, uint32_t real_n, ui
     }
     ok(wrong == 0, "isa %u: n=%u m=%u: %u samples in sets of %u x %u", isa, n, m, spp, real_n, real_m);
     plugin->destroy(instance);
+}
+
+/* compat=floor-sqrt: the first samples, as many as the largest square number among them, are one in each of so many cells. */
+static void test_floor_sqrt(uint32_t spp, uint32_t side)
+{
+    void *instance;
+
+    floor_sqrt = 1;
+    ok(make(4, 0, &instance) == MCR_E_INVALID && make(0, 4, &instance) == MCR_E_INVALID, "isa %u: floor-sqrt chooses n and m: %s", isa, context.message);
+    test_given(0, 0, spp, side, side);
+    floor_sqrt = 0;
 }
 
 /* z of a chi-square of `df` degrees of freedom (Wilson and Hilferty 1931). */
@@ -370,6 +383,9 @@ int main(void)
         test_given(0, 10, 101, 11, 10);
         test_given(100, 100, 60, 100, 100);
         test_given(256, 256, 65536, 256, 256);
+        test_floor_sqrt(10, 3);
+        test_floor_sqrt(1000, 31);
+        test_floor_sqrt(49, 7);
         test_order(3, 0, 1);
         test_order(4, 0, 1);
         test_order(7, 2, 3);

@@ -19,7 +19,7 @@ static const char *judge(const struct mcr_block_word *word)
             return "an incomplete row";
         if (strcmp(mcr_word_form(row->type), "a value") == 0)
             return "a type without a form";
-        if (!!row->choices != (row->type == MCR_TYPE_CHOICE))
+        if (!!row->choices != (row->type == MCR_TYPE_CHOICE || row->type == MCR_WORD_CHOICES))
             return "choices that are none";
         if (row->type != MCR_TYPE_CHOICE && row->type != MCR_WORD_TRANSFORM && !(row->min < row->max))
             return "an empty range";
@@ -38,7 +38,7 @@ int main(void)
     size_t count = mcr_block_words(MCR_INSIDE_SCENE, list, 64);
     for (uint32_t i = 0; i < mcr_scene_block_count; i++) {
         const struct mcr_block_word *word = &mcr_scene_blocks[i];
-        const struct mcr_block_form *form = mcr_block_form(MCR_INSIDE_SCENE, word->word);
+        const struct mcr_block_form *form = mcr_block_form(word->role == MCR_BLOCK_REFERENCE ? MCR_INSIDE_STUDY : MCR_INSIDE_SCENE, word->word);
         const char *why = judge(word);
         ok(!why, "the table of %s%s%s: %s", word->word, word->kind ? " " : "", word->kind ? word->kind : "", why ? why : "good");
         ok(form && (word->kind || word->role == MCR_BLOCK_MATERIAL) == form->has_kind &&
