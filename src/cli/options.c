@@ -1,12 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "cli/options.h"
 
-#include <errno.h>
-#include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/cpu.h"
+#include "cli/arguments.h"
 
 enum option_id {
     OUTPUT, SPP, DEPTH, SEED, THREADS, SAMPLER, SIZE, CROP, PRECISION, ACCEL, ISA, BATCH, REPLICATES, ROULETTE, COMPAT, SET, PLUGIN, LAYERS, REPORT,
@@ -75,34 +74,10 @@ void mcr_options_help(FILE *to)
           to);
 }
 
-static int usage_error(const char *format, ...) __attribute__((format(printf, 1, 2)));
-static int usage_error(const char *format, ...)
-{
-    va_list arguments;
-    fputs("mcrender: error: ", stderr);
-    va_start(arguments, format);
-    vfprintf(stderr, format, arguments);
-    va_end(arguments);
-    fputs("\n", stderr);
-    return MCR_EXIT_USAGE;
-}
-
-/* A whole decimal number in lo .. hi. */
-static int whole(const char *option, const char *text, uint64_t lo, uint64_t hi, uint64_t *out)
-{
-    char *end;
-    errno = 0;
-    unsigned long long value = strtoull(text, &end, 10);
-    if (text[0] < '0' || text[0] > '9' || *end || errno || value < lo || value > hi)
-        return usage_error("%s expects a whole number from %llu to %llu, not '%s'", option, (unsigned long long)lo, (unsigned long long)hi, text);
-    *out = value;
-    return 0;
-}
-
 static int whole32(const char *option, const char *text, uint32_t lo, uint32_t hi, uint32_t *out, int *has)
 {
     uint64_t value;
-    int status = whole(option, text, lo, hi, &value);
+    int status = mcr_argument_whole(option, text, lo, hi, &value);
     if (!status) {
         *out = (uint32_t)value;
         *has = 1;
@@ -110,44 +85,13 @@ static int whole32(const char *option, const char *text, uint32_t lo, uint32_t h
     return status;
 }
 
-/* `count` whole numbers with `separator` between them. */
-static int several(const char *option, const char *text, char separator, uint32_t count, uint32_t lo, const char *form, uint32_t *out)
-{
-    const char *at = text;
-    for (uint32_t i = 0; i < count; i++) {
-        char *end;
-        errno = 0;
-        unsigned long long value = *at >= '0' && *at <= '9' ? strtoull(at, &end, 10) : UINT64_MAX;
-        if (value == UINT64_MAX || errno || value < lo || value > 65536 || *end != (i + 1 < count ? separator : '\0'))
-            return usage_error("%s expects %s in pixels, each from %u to 65536, not '%s'", option, form, lo, text);
-        out[i] = (uint32_t)value;
-        at = end + 1;
-    }
-    return 0;
-}
-
-/* One of the words; those from `absent` on are known but not in this build. */
-static int word(const char *option, const char *text, const char *const *words, uint32_t count, uint32_t absent, uint32_t *out)
-{
-    for (uint32_t i = 0; i < count; i++) {
-        if (strcmp(text, words[i]))
-            continue;
-        if (i >= absent)
-            return usage_error("%s %s is not available in this build", option, text);
-        *out = i;
-        return 0;
-    }
-    const char *near = mcr_nearest_word(text, words, count);
-    return usage_error("%s does not know '%s'%s%s%s", option, text, near ? ", did you mean '" : "", near ? near : "", near ? "'?" : "");
-}
-
 static int take_isa(struct mcr_options *options, const char *text)
 {
     int32_t isa = mcr_cpu_isa_parse(text);
     if (isa < 0)
-        return usage_error("--isa expects baseline, avx2 or avx512, not '%s'", text);
+        return mcr_usage_error("--isa expects baseline, avx2 or avx512, not '%s'", text);
     if ((uint32_t)isa > options->isa)
-        return usage_error("--isa %s: this processor or build has %s at most", text, mcr_cpu_isa_name(options->isa));
+        return mcr_usage_error("--isa %s: this processor or build has %s at most", text, mcr_cpu_isa_name(options->isa));
     options->isa = (uint32_t)isa;
     return 0;
 }
@@ -156,17 +100,17 @@ static int take_set(struct mcr_options *options, const char *text)
 {
     const char *equals = strchr(text, '=');
     if (!equals || equals == text || !equals[1])
-        return usage_error("--set expects NAME=VALUE, not '%s'", text);
+        return mcr_usage_error("--set expects NAME=VALUE, not '%s'", text);
     if (options->definition_count == MCR_DEFINITIONS_MAX)
-        return usage_error("--set may be given %u times at most", MCR_DEFINITIONS_MAX);
+        return mcr_usage_error("--set may be given %u times at most", MCR_DEFINITIONS_MAX);
     char *copy = strdup(text);
     if (!copy)
-        return usage_error("out of memory");
+        return mcr_usage_error("out of memory");
     copy[equals - text] = '\0';
     for (uint32_t i = 0; i < options->definition_count; i++)
         if (!strcmp(options->definition[i].name, copy)) {
             free(copy);
-            return usage_error("--set %.*s is given twice", (int)(equals - text), text);
+            return mcr_usage_error("--set %.*s is given twice", (int)(equals - text), text);
         }
     options->definition_text[options->definition_count] = copy;
     options->definition[options->definition_count++] = (struct mcr_definition){.name = copy, .text = copy + (equals - text) + 1};
@@ -178,7 +122,7 @@ static int take_exposure(struct mcr_options *options, const char *text)
     char *end;
     options->exposure = strtod(text, &end);
     if (end == text || *end || !(options->exposure >= -64 && options->exposure <= 64))
-        return usage_error("--exposure expects a number of stops from -64 to 64, not '%s'", text);
+        return mcr_usage_error("--exposure expects a number of stops from -64 to 64, not '%s'", text);
     return 0;
 }
 
@@ -194,7 +138,7 @@ static int take_roulette(struct mcr_overrides *o, const char *text)
     if (!o->roulette || !strcmp(text, "on"))
         return 0;
     if (strncmp(text, before, head) || text[length - 1] != ')' || length - head > sizeof digits)
-        return usage_error("--roulette expects %s, not '%s'", form, text);
+        return mcr_usage_error("--roulette expects %s, not '%s'", form, text);
     snprintf(digits, sizeof digits, "%.*s", (int)(length - head - 1), text + head);
     return whole32("--roulette on(from=N)", digits, 0, INT32_MAX - 1, &o->roulette_from, &o->has_roulette_from);
 }
@@ -203,7 +147,7 @@ static int take_compat(struct mcr_overrides *o, const char *text)
 {
     char reason[256];
     if (mcr_compat_parse(text, &o->compat, reason, sizeof reason))
-        return usage_error("--compat %s", reason);
+        return mcr_usage_error("--compat %s", reason);
     o->has_compat = 1;
     return 0;
 }
@@ -217,7 +161,7 @@ static int take(struct mcr_options *options, const struct option *option, const 
     switch (option->id) {
     case OUTPUT:
         if (options->output_count == MCR_OUTPUTS_MAX)
-            return usage_error("-o may be given %u times at most", MCR_OUTPUTS_MAX);
+            return mcr_usage_error("-o may be given %u times at most", MCR_OUTPUTS_MAX);
         options->output[options->output_count++] = text;
         return 0;
     case SPP:
@@ -226,7 +170,7 @@ static int take(struct mcr_options *options, const struct option *option, const 
         return whole32("--depth", text, 0, INT32_MAX - 1, &o->depth, &o->has_depth);
     case SEED:
         o->has_seed = 1;
-        return whole("--seed", text, 0, UINT64_C(1) << 53, &o->seed);
+        return mcr_argument_whole("--seed", text, 0, UINT64_C(1) << 53, &o->seed);
     case THREADS:
         return whole32("--threads", text, 0, 1024, &o->threads, &o->has_threads);
     case SAMPLER:
@@ -234,24 +178,20 @@ static int take(struct mcr_options *options, const struct option *option, const 
         return 0;
     case SIZE: {
         uint32_t size[2];
-        int status = several("--size", text, 'x', 2, 1, "WIDTHxHEIGHT", size);
+        int status = mcr_argument_pixels("--size", text, 'x', 2, 1, "WIDTHxHEIGHT", size);
         o->has_size = !status;
         o->width = status ? 0 : size[0];
         o->height = status ? 0 : size[1];
         return status;
     }
     case CROP:
-        if (several("--crop", text, ',', 4, 0, "X0,Y0,X1,Y1", o->crop))
-            return MCR_EXIT_USAGE;
-        if (o->crop[0] >= o->crop[2] || o->crop[1] >= o->crop[3])
-            return usage_error("--crop %s is empty: X0 < X1 and Y0 < Y1 are expected", text);
         o->has_crop = 1;
-        return 0;
+        return mcr_argument_crop("--crop", text, o->crop);
     case PRECISION:
-        return word("--precision", text, precisions, 2, 1, &chosen);
+        return mcr_argument_word("--precision", text, precisions, 2, 1, &chosen);
     case ACCEL:
         o->has_accel = 1;
-        return word("--accel", text, accels, 4, 3, &o->accel);
+        return mcr_argument_word("--accel", text, accels, 4, 3, &o->accel);
     case ISA:
         return take_isa(options, text);
     case BATCH:
@@ -264,12 +204,12 @@ static int take(struct mcr_options *options, const struct option *option, const 
         return take_compat(o, text);
     case LAYERS:
         options->variance_layer = o->channel_variance = 1;
-        return word("--layers", text, layers, 1, 1, &chosen);
+        return mcr_argument_word("--layers", text, layers, 1, 1, &chosen);
     case SET:
         return take_set(options, text);
     case PLUGIN:
         if (options->plugin_count == MCR_PLUGINS_MAX)
-            return usage_error("--plugin may be given %u times at most", MCR_PLUGINS_MAX);
+            return mcr_usage_error("--plugin may be given %u times at most", MCR_PLUGINS_MAX);
         options->plugin[options->plugin_count++] = text;
         return 0;
     case REPORT:
@@ -277,7 +217,7 @@ static int take(struct mcr_options *options, const struct option *option, const 
         return 0;
     case BITS:
         if (strcmp(text, "8") && strcmp(text, "16"))
-            return usage_error("--bits expects 8 or 16, not '%s'", text);
+            return mcr_usage_error("--bits expects 8 or 16, not '%s'", text);
         options->bits = text[0] == '8' ? 8 : 16;
         return 0;
     case EXPOSURE:
@@ -300,34 +240,13 @@ static int take(struct mcr_options *options, const struct option *option, const 
     }
 }
 
-static const struct option *unknown(const char *name, size_t length)
+/* NULL after a message. */
+static const struct option *find_long(const char *argument, size_t length)
 {
-    const char *names[OPTIONS];
-    char shown[64];
-    snprintf(shown, sizeof shown, "%.*s", (int)(length < sizeof shown ? length : sizeof shown), name);
-    for (size_t i = 0; i < OPTIONS; i++)
-        names[i] = table[i].name;
-    const char *near = mcr_nearest_word(shown, names, OPTIONS);
-    usage_error("unknown option '%s'%s%s%s", shown, near ? ", did you mean '" : "", near ? near : "", near ? "'?" : " (see mcrender --help)");
-    return NULL;
-}
-
-/* The option of which the first `length` bytes of `name` are all, or an abbreviation that fits no other. NULL after a message. */
-static const struct option *find_long(const char *name, size_t length)
-{
-    const struct option *found = NULL, *other = NULL;
-    for (size_t i = 0; i < OPTIONS && length > 2; i++) {
-        if (strncmp(table[i].name, name, length))
-            continue;
-        if (!table[i].name[length])
-            return &table[i];
-        other = found;
-        found = &table[i];
-    }
-    if (!other)
-        return found ? found : unknown(name, length);
-    usage_error("'%.*s' may be '%s' or '%s'", (int)length, name, other->name, found->name);
-    return NULL;
+    int found = mcr_option_find(&table[0].name, sizeof *table, OPTIONS, argument, length, 3);
+    if (found == MCR_OPTION_NONE)
+        mcr_option_unknown(&table[0].name, sizeof *table, OPTIONS, argument, length, "mcrender --help");
+    return found < 0 ? NULL : &table[found];
 }
 
 /* The option that an argument names: -h, -o, -oVALUE, --name, --name=VALUE. *value is the value in the argument, or NULL. NULL after a message. */
@@ -357,7 +276,7 @@ int mcr_options_parse(struct mcr_options *options, const char *command, int argc
         const char *value;
         if (operands_only || argv[i][0] != '-' || !argv[i][1]) {
             if (options->scene)
-                return usage_error("one operand expected: '%s' follows '%s'", argv[i], options->scene);
+                return mcr_usage_error("one operand expected: '%s' follows '%s'", argv[i], options->scene);
             options->scene = argv[i];
             continue;
         }
@@ -372,14 +291,14 @@ int mcr_options_parse(struct mcr_options *options, const char *command, int argc
         if (!option)
             return MCR_EXIT_USAGE;
         if (!(option->where & where))
-            return usage_error("%s does not go with 'mcrender %s'", option->name, command);
+            return mcr_usage_error("%s does not go with 'mcrender %s'", option->name, command);
         if (option->argument && !value && ++i == argc)
-            return usage_error("%s expects %s", option->name, option->argument);
+            return mcr_usage_error("%s expects %s", option->name, option->argument);
         if (!option->argument && value)
-            return usage_error("%s takes no value", option->name);
+            return mcr_usage_error("%s takes no value", option->name);
         value = value ? value : argv[i];
         if (option->argument && !*value)
-            return usage_error("%s expects %s, not an empty text", option->name, option->argument);
+            return mcr_usage_error("%s expects %s, not an empty text", option->name, option->argument);
         if (take(options, option, value))
             return MCR_EXIT_USAGE;
     }

@@ -4,6 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "cli/arguments.h"
+
 enum { OF_STUDY, OF_REFERENCE, DRY_RUN };
 
 static const struct option {
@@ -58,31 +60,13 @@ void mcr_study_options_help(FILE *to)
 
 #define SHORTEST 5u /* bytes of an abbreviation: fewer may be meant for an option that all commands have */
 
-/* The option of which the first `length` bytes are all, or an abbreviation; NULL for none. *other: another one that it may be. */
-static const struct option *find(const char *name, size_t length, const struct option **other)
-{
-    const struct option *found = NULL;
-    *other = NULL;
-    for (size_t i = 0; i < OPTIONS; i++) {
-        if (strncmp(table[i].name, name, length))
-            continue;
-        if (!table[i].name[length]) {
-            *other = NULL;
-            return &table[i];
-        }
-        *other = found;
-        found = &table[i];
-    }
-    return length >= SHORTEST ? found : NULL;
-}
-
 static int take_list(struct mcr_study_options *options, uint32_t index, const char *value)
 {
     const char *before = options->texts.setting[index];
     size_t room = before ? strlen(before) + strlen(value) + 3 : 0;
     char *whole = before ? malloc(room) : NULL;
     if (before && !whole) {
-        fputs("mcrender: error: out of memory\n", stderr);
+        mcr_usage_error("out of memory");
         return -1;
     }
     if (whole)
@@ -110,21 +94,18 @@ int mcr_study_option(struct mcr_study_options *options, int argc, char **argv, i
 {
     const char *argument = argv[*i], *equals = strchr(argument, '='), *value = equals ? equals + 1 : NULL;
     size_t length = equals ? (size_t)(equals - argument) : strlen(argument);
-    const struct option *other = NULL, *option = strncmp(argument, "--", 2) ? NULL : find(argument, length, &other);
-    if (!option)
-        return 0;
-    if (other) {
-        fprintf(stderr, "mcrender: error: '%.*s' may be '%s' or '%s'\n", (int)length, argument, other->name, option->name);
-        return -1;
-    }
+    int found = strncmp(argument, "--", 2) ? MCR_OPTION_NONE : mcr_option_find(&table[0].name, sizeof *table, OPTIONS, argument, length, SHORTEST);
+    if (found < 0)
+        return found == MCR_OPTION_NONE ? 0 : -1;
+    const struct option *option = &table[found];
     if (!option->argument && value) {
-        fprintf(stderr, "mcrender: error: %s takes no value\n", option->name);
+        mcr_usage_error("%s takes no value", option->name);
         return -1;
     }
     if (option->argument && !value)
         value = ++*i < argc ? argv[*i] : "";
     if (option->argument && !*value) {
-        fprintf(stderr, "mcrender: error: %s expects %s\n", option->name, option->argument);
+        mcr_usage_error("%s expects %s", option->name, option->argument);
         return -1;
     }
     return take(options, option, value);

@@ -206,7 +206,7 @@ usage "one image" "an image and a reference are expected" half.pfm
 usage "three images" "two images are expected: 'half.pfm' follows 'quarter.pfm'" half.pfm quarter.pfm half.pfm
 usage "standard input twice" "standard input holds one image only" - -
 usage "an unknown option" "unknown option '--josn', did you mean '--json'?" half.pfm half.pfm --josn
-usage "an ambiguous option" "may be several options" half.pfm half.pfm --ma map.ppm
+usage "an ambiguous option" "'--ma' may be '--m" half.pfm half.pfm --ma map.ppm
 usage "an unknown metric" "--fail-above does not know 'psrn', did you mean 'psnr'?" half.pfm half.pfm --fail-above psrn=3
 usage "a metric far from any" "expected mse, rmse, mae," half.pfm half.pfm --fail-above beauty=3
 usage "a limit without a value" "--fail-above expects METRIC=VALUE" half.pfm half.pfm --fail-above mse
