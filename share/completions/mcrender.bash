@@ -36,17 +36,18 @@ _mcrender()
     --sampler) mapfile -t COMPREPLY < <(compgen -W "$(_mcrender_words "$program")" -- "$word"); return ;;
     --plugin) mapfile -t COMPREPLY < <(compgen -f -X '!*.so' -- "$word"; compgen -d -- "$word"); return ;;
     -o | --report) mapfile -t COMPREPLY < <(compgen -f -- "$word"); return ;;
+    --roulette) mapfile -t COMPREPLY < <(compgen -W 'on off' -- "$word"); return ;;
     --spp | --depth | --seed | --threads | --size | --crop | --batch | --set | --exposure) return ;;
     esac
     if [ "$command" = compare ]; then
         _mcrender_compare "$program" "$word" "$before"
     elif [[ $word == -* ]]; then
-        mapfile -t COMPREPLY < <(compgen -W "$("$program" --help 2>/dev/null | grep -oE '  -[-a-z]+' | tr -d ' ')" -- "$word")
+        mapfile -t COMPREPLY < <(compgen -W "$( ("$program" --help; [ "$command" != study ] || "$program" study --help) 2>/dev/null | grep -oE '  -[-a-z]+' | tr -d ' ')" -- "$word")
     elif [ "$command" = plugins ]; then
         mapfile -t COMPREPLY < <(compgen -W "$(_mcrender_words "$program")" -- "$word")
     else
         mapfile -t COMPREPLY < <(compgen -f -X '!*.scn' -- "$word"; compgen -d -- "$word")
-        [ "$COMP_CWORD" = 1 ] && mapfile -t -O "${#COMPREPLY[@]}" COMPREPLY < <(compgen -W 'check compare plugins' -- "$word")
+        [ "$COMP_CWORD" = 1 ] && mapfile -t -O "${#COMPREPLY[@]}" COMPREPLY < <(compgen -W 'check compare plugins study' -- "$word")
     fi
 }
 
