@@ -276,7 +276,10 @@ struct mcr_host {
     int32_t (*light_density_point)(const struct mcr_host *host, struct mcr_context *context, uint32_t by, const struct mcr_points *at,
                                    const struct mcr_emitter_points *points, double *density);
 
-    /* The material at the points: a direction by its own sampling (MCR_MATERIAL_DIMENSIONS numbers), and its density. */
+    /*
+     * The material at the points: a direction by its own sampling (MCR_MATERIAL_DIMENSIONS numbers), and its density. The points are
+     * those that the operation was given, all of them and in the same arrays; only `wanted` may differ.
+     */
     int32_t (*material_draw)(const struct mcr_host *host, struct mcr_context *context, const struct mcr_points *at,
                              const double *const *number, const struct mcr_directions *out, double *density);
     int32_t (*material_density)(const struct mcr_host *host, struct mcr_context *context, const struct mcr_points *at,

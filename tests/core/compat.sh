@@ -114,13 +114,13 @@ exactly 'floor-sqrt by the expression' furnace "$(calculate '.58125 * 9 / 10')" 
 same_picture 'floor-sqrt: a square number of samples is what it was' furnace floor-sqrt --sampler 'stratified(cosine)' --spp 50 --replicates 2
 
 # ---- with several techniques ----
-if ! ${MCR_CC:-cc} -std=gnu17 -O2 -shared -fPIC -I"$srcdir/src" "$srcdir/tests/core/nee.c" -o "$TMPDIR/nee.so"; then
-    point 1 'nee.c compiles'
+if ! ${MCR_CC:-cc} -std=gnu17 -O2 -shared -fPIC -I"$srcdir/src" "$srcdir/tests/core/neelight.c" -o "$TMPDIR/neelight.so" -lm; then
+    point 1 'neelight.c compiles'
     finish
 fi
 # At depth 1 `nee` looks for the lamps in vain and goes on as `cosine` does; `neelight` shares the background out between two ways to find it.
 for sampler in nee neelight; do
-    set -- --plugin "$TMPDIR/nee.so" --sampler "$sampler" --spp 256
+    set -- --plugin "$TMPDIR/neelight.so" --sampler "$sampler" --spp 256
     nearly "$sampler: background-at-limit" furnace .60625 --compat background-at-limit "$@"
     [ $sampler = nee ] && exactly "$sampler: background-at-limit, depth 1" furnace .65 --compat background-at-limit --depth 1 "$@"
     [ $sampler = nee ] || nearly "$sampler: background-at-limit, depth 1" furnace .65 --compat background-at-limit --depth 1 "$@"

@@ -22,7 +22,7 @@ for sampler in light 'light(by=area)' 'stratified(light)'; do
     run "$sampler" --quiet
     check "$sampler: a warning where the report is not printed" grep -q 'warning: .*misses reflected light' "$TMPDIR/text"
 done
-for sampler in cosine uniform 'mixture(cosine 1, light 1)' 'stratified(mixture(light 3, uniform 1))'; do
+for sampler in cosine uniform bsdf nee 'mixture(cosine 1, light 1)' 'stratified(mixture(light 3, uniform 1))'; do
     run "$sampler"
     check "$sampler: complete in the text" grep -q '^coverage  complete$' "$TMPDIR/text"
     check "$sampler: complete in JSON" says complete true

@@ -53,6 +53,8 @@ for scene in "$srcdir"/scenes/*.scn; do
     compare "${name%.scn}, stratified" "$scene" --spp 21 --sampler "stratified($lights)"
 done
 compare 'cornell-box, light by area' "$srcdir/scenes/cornell-box.scn" --spp 5 --sampler 'mixture(uniform 1, cosine 2, light(by=area) 3)'
+compare 'every-shape, nee' "$srcdir/scenes/every-shape.scn" --spp 5 --sampler 'stratified(nee)'
+compare 'cornell-box, bsdf and light' "$srcdir/scenes/cornell-box.scn" --spp 5 --sampler 'mixture(bsdf 2, light(by=area) 3)'
 
 quirks=clamp,background-at-limit,disk-polar,sphere-spherical,floor-sqrt
 compare 'spheres-thinlens, every quirk' "$srcdir/scenes/spheres-thinlens.scn" --spp 21 --sampler 'stratified(mixture(cosine 1, light 1))' --compat $quirks

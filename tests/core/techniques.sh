@@ -5,7 +5,8 @@
 # of several kinds, with indirect light and shadows.
 . "$srcdir/tests/tap.sh"
 . "$srcdir/tests/core/measure.sh"
-${MCR_CC:-cc} -std=gnu17 -O2 -shared -fPIC -I"$srcdir/src" "$srcdir/tests/core/nee.c" -o "$TMPDIR/nee.so" || { point 1 "nee.c compiles"; finish; }
+${MCR_CC:-cc} -std=gnu17 -O2 -shared -fPIC -I"$srcdir/src" "$srcdir/tests/core/neelight.c" -o "$TMPDIR/neelight.so" -lm ||
+    { point 1 "neelight.c compiles"; finish; }
 
 # room NAME TEXT...: a box, open toward the camera, with a block in it and TEXT
 room()
@@ -48,8 +49,8 @@ measured()
     local scene=$TMPDIR/$1.scn sampler=$2 wanted=$3
     shift 3
     seed=$((seed + 1))
-    render "$scene" --plugin "$TMPDIR/nee.so" --sampler "$sampler" --spp 64 --seed $((1000 + seed)) "$@" || return 1
-    render "$scene" --plugin "$TMPDIR/nee.so" --sampler "$sampler" --seed $seed "$@" \
+    render "$scene" --plugin "$TMPDIR/neelight.so" --sampler "$sampler" --spp 64 --seed $((1000 + seed)) "$@" || return 1
+    render "$scene" --plugin "$TMPDIR/neelight.so" --sampler "$sampler" --seed $seed "$@" \
         --spp "$(calculate 'int((n = variance / (wanted * mean) ^ 2 / 256 + 1) < 64 ? 64 : n)' variance="$variance" wanted="$wanted" mean="$mean")"
 }
 
@@ -98,7 +99,7 @@ done
 reference plane cosine
 for sampler in uniform 'mixture(cosine 1, uniform 1)'; do same plane "$sampler"; done
 for sampler in nee neelight light 'mixture(cosine 1, light 1)'; do
-    said=$("$MCRENDER" check "$TMPDIR/plane.scn" --plugin "$TMPDIR/nee.so" --sampler "$sampler" 2>&1)
+    said=$("$MCRENDER" check "$TMPDIR/plane.scn" --plugin "$TMPDIR/neelight.so" --sampler "$sampler" 2>&1)
     [ $? = 3 ] && [[ $said = *"an infinite plane cannot be sampled as a light"* ]]
     point $? "plane $sampler: a located error" "$said"
 done
@@ -107,7 +108,7 @@ done
 render "$TMPDIR/shapes.scn" --sampler cosine --spp 64 --depth 0
 cp "$TMPDIR/out.pfm" "$TMPDIR/emission.pfm"
 for sampler in uniform light 'mixture(cosine 1, light 1)' nee neelight; do
-    render "$TMPDIR/shapes.scn" --plugin "$TMPDIR/nee.so" --sampler "$sampler" --spp 64 --depth 0
+    render "$TMPDIR/shapes.scn" --plugin "$TMPDIR/neelight.so" --sampler "$sampler" --spp 64 --depth 0
     check "shapes $sampler --depth 0: the same bits" cmp "$TMPDIR/emission.pfm" "$TMPDIR/out.pfm"
 done
 for depth in 1 2; do

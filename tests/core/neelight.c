@@ -1,8 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * A sampler with several techniques, for testing how the core combines them: `nee` draws points on emitters and continues by the material,
- * `neelight` looks for light with a direction technique as well. `skewed` is `nee` with a mistake: the density over emitters is 5 % too high.
+ * For testing how the core combines techniques, and that materials are asked: the sampler `neelight` is `nee` with a direction technique
+ * that looks for light as well; `skewed` is `nee` with a mistake: the density over emitters is 5 % too high. The material `flat` scatters as lambert of albedo 1/2
+ * does, but draws uniformly, and draws nothing at all in lanes that nobody looks at.
  */
+#include <math.h>
+#include <mcrender/material.h>
 #include <mcrender/sampler.h>
 
 static int32_t create(const struct mcr_host *host, struct mcr_context *context, const struct mcr_creation *with, void **instance)
@@ -94,28 +97,77 @@ static int32_t density_emitter_skewed(const struct mcr_host *host, struct mcr_co
     return status;
 }
 
-#define HEAD(NAME) {sizeof(struct mcr_directions_plugin), MCR_KIND_DIRECTIONS, MCR_ISA_BASELINE, 0, NAME, "1", "Apache-2.0", "for tests", NULL}
+/* ---- flat ------------------------------------------------------------------------------------------------------ */
 
-static const struct mcr_directions_plugin nee = {.head = HEAD("nee"),
-                                                 .create = create,
-                                                 .techniques = one_emitter_technique,
-                                                 .draw = draw,
-                                                 .density = density,
-                                                 .draw_emitter = draw_emitter,
-                                                 .density_emitter = density_emitter};
-static const struct mcr_directions_plugin neelight = {.head = HEAD("neelight"),
+#define PER_PI 0.31830988618379067
+
+static int32_t flat_traits(const struct mcr_host *host, struct mcr_context *context, const void *instance, const struct mcr_values *values,
+                           struct mcr_material_traits *traits)
+{
+    (void)host, (void)context, (void)instance, (void)values;
+    traits->does = MCR_MATERIAL_REFLECTS;
+    return MCR_OK;
+}
+
+static double cosine(const struct mcr_points *at, const struct mcr_directions *toward, uint32_t i)
+{
+    return at->nx[i] * toward->x[i] + at->ny[i] * toward->y[i] + at->nz[i] * toward->z[i];
+}
+
+static int32_t flat_evaluate(const struct mcr_host *host, struct mcr_context *context, const void *instance, const struct mcr_inputs *inputs,
+                             const struct mcr_points *at, const struct mcr_directions *toward, const struct mcr_colours *out)
+{
+    (void)host, (void)context, (void)instance, (void)inputs;
+    for (uint32_t i = 0; i < at->n; i++) {
+        double c = cosine(at, toward, i);
+        out->r[i] = out->g[i] = out->b[i] = c > 0 ? 0.5 * c * PER_PI : 0;
+    }
+    return MCR_OK;
+}
+
+static int32_t flat_density(const struct mcr_host *host, struct mcr_context *context, const void *instance, const struct mcr_inputs *inputs,
+                            const struct mcr_points *at, const struct mcr_directions *toward, double *density)
+{
+    (void)host, (void)context, (void)instance, (void)inputs;
+    for (uint32_t i = 0; i < at->n; i++)
+        density[i] = cosine(at, toward, i) > 0 ? 0.5 * PER_PI : 0;
+    return MCR_OK;
+}
+
+static int32_t flat_draw(const struct mcr_host *host, struct mcr_context *context, const void *instance, const struct mcr_inputs *inputs,
+                         const struct mcr_points *at, const double *const *number, const struct mcr_directions *out, double *density)
+{
+    for (uint32_t i = 0; i < at->n; i++) {
+        double x, y, square = 1 - mcr_disk_from_square(number[0][i], number[1][i], &x, &y), s = sqrt(2 - square);
+        int wanted = !at->wanted || at->wanted[i] != 0;
+        mcr_to_world(at->nx[i], at->ny[i], at->nz[i], x * s, y * s, 1 - square, &out->x[i], &out->y[i], &out->z[i]);
+        if (!wanted || !(cosine(at, out, i) > 0))
+            out->x[i] = out->y[i] = out->z[i] = 0;
+    }
+    return density ? flat_density(host, context, instance, inputs, at, out, density) : MCR_OK;
+}
+
+#define HEAD(NAME, TYPE, KIND) {sizeof(struct TYPE), KIND, MCR_ISA_BASELINE, 0, NAME, "1", "Apache-2.0", "for tests", NULL}
+
+static const struct mcr_directions_plugin neelight = {.head = HEAD("neelight", mcr_directions_plugin, MCR_KIND_DIRECTIONS),
                                                       .create = create,
                                                       .techniques = and_a_direction_technique,
                                                       .draw = draw,
                                                       .density = density,
                                                       .draw_emitter = draw_emitter,
                                                       .density_emitter = density_emitter};
-static const struct mcr_directions_plugin skewed = {.head = HEAD("skewed"),
+static const struct mcr_directions_plugin skewed = {.head = HEAD("skewed", mcr_directions_plugin, MCR_KIND_DIRECTIONS),
                                                     .create = create,
                                                     .techniques = one_emitter_technique,
                                                     .draw = draw,
                                                     .density = density,
                                                     .draw_emitter = draw_emitter_skewed,
                                                     .density_emitter = density_emitter_skewed};
-static const struct mcr_descriptor *const list[] = {&nee.head, &neelight.head, &skewed.head};
+static const struct mcr_material_plugin flat = {.head = HEAD("flat", mcr_material_plugin, MCR_KIND_MATERIAL),
+                                                .create = create,
+                                                .traits = flat_traits,
+                                                .evaluate = flat_evaluate,
+                                                .draw = flat_draw,
+                                                .density = flat_density};
+static const struct mcr_descriptor *const list[] = {&neelight.head, &skewed.head, &flat.head};
 MCR_EXPORT const struct mcr_plugin mcr_plugin = {sizeof mcr_plugin, MCR_PLUGIN_MAJOR, MCR_PLUGIN_MINOR, 3, list};

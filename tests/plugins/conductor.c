@@ -1,0 +1,371 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* conductor: directional albedos with a known answer, Fresnel's formulas, reciprocity, sampling, and the extremes of roughness and angle. */
+#include "facets.h"
+
+#define LANES 4096u
+#define U 0x1p-53
+#define LENGTH(x) (sizeof(x) / sizeof *(x))
+
+enum { METAL, REFLECTANCE, ETA, K, ROUGHNESS };
+enum { BY_REFLECTANCE, BY_INDEX, GOLD, SILVER, COPPER, ALUMINIUM };
+
+static const double normal[3] = {0.48, -0.6, 0.64}, upright[3] = {0, 0, 1}; /* cosines to the latter are exact */
+static const double alphas[] = {0.1, 0.25, 0.5, 1}, cosines[] = {1, 0.5, 0.1};
+static uint32_t isa;
+static const struct mcr_material_plugin *plugin;
+
+static void settings_of(double s[15], double metal, double eta, double k, double alpha)
+{
+    for (int c = 0; c < 3; c++)
+        s[c] = 0, s[3 + c] = 1, s[6 + c] = eta, s[9 + c] = k, s[12 + c] = 0;
+    s[0] = metal;
+    s[12] = alpha;
+}
+
+static void set(struct sheet *sheet, double metal, double eta, double k, double alpha)
+{
+    double s[15];
+
+    settings_of(s, metal, eta, k, alpha);
+    sheet_set(sheet, s);
+}
+
+static void init(struct sheet *sheet, double alpha)
+{
+    double s[15];
+
+    settings_of(s, BY_REFLECTANCE, 1, 1, alpha);
+    sheet_init(sheet, plugin, LANES, s);
+}
+
+/* F = 1: computed in high precision, S21 of the project's table of analytic scenes. */
+static void test_albedo(void)
+{
+    static const double answer[4][3] = {{.988304056521, .969204984412, .883455001867},
+                                        {.915812430250, .857263435582, .891622351809},
+                                        {.687848515110, .698250696928, .860105072668},
+                                        {1 - M_LN2, .450693855666, .760210472720}};
+    struct sheet sheet;
+
+    init(&sheet, 1);
+    for (uint32_t a = 0; a < LENGTH(alphas); a++)
+        for (uint32_t m = 0; m < LENGTH(cosines); m++) {
+            double exact = answer[a][m], mass, grid;
+            struct estimate drawn;
+
+            set(&sheet, BY_REFLECTANCE, 1, 1, alphas[a]);
+            sheet_view(&sheet, normal, cosines[m], 0.7);
+            drawn = albedo_drawn(&sheet, 512, 300 + 3 * a + m);
+            ok(drawn.error < 0.001 * exact && fabs(drawn.mean - exact) <= 4 * drawn.error && drawn.bad == 0,
+               "%u: albedo, alpha %g, cos %g, own sampling: %.6f +- %.6f, z %.2f", isa, alphas[a], cosines[m], drawn.mean, drawn.error,
+               (drawn.mean - exact) / drawn.error);
+            ok(drawn.most <= 1 + 16 * U, "%u: no weight above 1 (%.17g)", isa, drawn.most);
+            /* Seen from above nothing depends on the azimuth. The midpoint rule's own error is 1.3e-5 at most: a quarter with steps halved. */
+            grid = albedo_uniform(&sheet, normal, m ? 512 : 4096, m ? 1024 : 128, &mass);
+            ok(fabs(grid - exact) < 2e-5, "%u: by uniform directions: off by %.1e", isa, grid - exact);
+            ok(mass >= drawn.mean - 4 * drawn.error && mass <= 1 + 2e-5, "%u: the density integrates to %.6f", isa, mass);
+        }
+    sheet_fini(&sheet);
+}
+
+/* The share that is not drawn is what the density lacks: it is a cell of its own. */
+static void test_draw(void)
+{
+    struct sheet sheet;
+
+    init(&sheet, 1);
+    for (uint32_t a = 0; a < LENGTH(alphas); a++)
+        for (uint32_t m = 0; m < LENGTH(cosines); m++) {
+            double mass, z;
+
+            set(&sheet, BY_REFLECTANCE, 1, 1, alphas[a]);
+            sheet_view(&sheet, normal, cosines[m], 2.1);
+            z = chi_square(&sheet, normal, 64, 400 + 3 * a + m, &mass);
+            ok(z <= 4, "%u: draws follow the density, alpha %g, cos %g: chi-square z %.2f, drawn at all %.4f", isa, alphas[a], cosines[m], z, mass);
+        }
+    sheet_fini(&sheet);
+}
+
+/*
+ * R of eta + i k from the complex amplitudes (n = eta + i k; r_s = (c - n c_t) / (c + n c_t), r_p = (n c - c_t) / (n c + c_t), c_t^2 = 1 - (1 - c^2) / n^2;
+ * R the mean of |r_s|^2 and |r_p|^2), with python3-mpmath at 50 digits.
+ */
+static const double fresnel[][4] = {
+    {1, 0.2, 3.9, 0.95195195195195195},
+    {0.5, 0.2, 3.9, 0.9458823818013334},
+    {0.1, 1.3, 7.3, 0.84995220093244356},
+    {0.03125, 0.05, 4.1, 0.99668206133596628},
+    {0.7, 1.5, 0, 0.050916935590777447},
+    {0.3, 1.5, 0, 0.20775634307089776},
+    {0.25, 0.5, 0.0, 1.0},
+    {0.9, 0.5, 0, 0.16456302436995568},
+    {0.25, 1, 1e-06, 5.649999997844212e-11},
+    {0.5, 1000.0, 1000.0, 0.99750424565766055},
+    {1e-08, 1.3, 1.8, 0.99999996757401474},
+    {1, 1.5, 0, 0.04},
+    {0.6, 1.01, 2.5, 0.60794835099690795},
+    {1, 0, 0, 1},
+};
+
+/* evaluate toward the mirror direction, over the same with F = 1, whose half vector is the normal. */
+static void test_fresnel(void)
+{
+    double worst = 0, schlick = 0, metals = 0;
+    struct sheet sheet;
+
+    init(&sheet, 0.3);
+    for (uint32_t k = 0; k < LENGTH(fresnel); k++) {
+        double one, f, c = fresnel[k][0], m = 1 - c;
+
+        sheet_view(&sheet, normal, c, 0.4);
+        sheet_toward(&sheet, 0, normal, c, 0.4 + M_PI);
+        set(&sheet, BY_REFLECTANCE, 1, 1, 0.3);
+        sheet_evaluate(&sheet);
+        one = sheet.colour.g[0];
+        set(&sheet, BY_INDEX, fresnel[k][1], fresnel[k][2], 0.3);
+        sheet_evaluate(&sheet);
+        f = sheet.colour.g[0] / one;
+        worst = fmax(worst, fabs(f - fresnel[k][3]) / (fresnel[k][3] + 1e-6));
+        for (int i = 0; i < 8; i++)
+            sheet.copies[3 * METAL][i] = BY_REFLECTANCE, sheet.copies[3 * REFLECTANCE + 1][i] = 0.6;
+        sheet_evaluate(&sheet);
+        schlick = fmax(schlick, fabs(sheet.colour.g[0] / one - (0.6 + 0.4 * pow(m, 5))));
+    }
+    ok(worst <= 1e-12, "%u: Fresnel's formulas to 1e-12 (%.1e)", isa, worst);
+    ok(schlick <= 1e-14, "%u: Schlick's formula to 1e-14 (%.1e)", isa, schlick);
+    /*
+     * Reflectances at normal incidence from the measured indices: ((n - 1)^2 + k^2) / ((n + 1)^2 + k^2), red, green, blue.
+     * The plugin has the indices to 4 digits, which leaves 6e-5.
+     */
+    static const double metal[4][3] = {{0.9240, 0.7882, 0.4039}, {0.9870, 0.9829, 0.9791}, {0.8736, 0.6206, 0.5492}, {0.9102, 0.9154, 0.9208}};
+    sheet_view(&sheet, normal, 1, 0);
+    sheet_toward(&sheet, 0, normal, 1, 0);
+    set(&sheet, BY_REFLECTANCE, 1, 1, 0.3);
+    sheet_evaluate(&sheet);
+    double one = sheet.colour.r[0];
+    for (uint32_t k = 0; k < 4; k++) {
+        set(&sheet, GOLD + k, 1, 1, 0.3);
+        sheet_evaluate(&sheet);
+        metals = fmax(metals, fabs(sheet.colour.r[0] / one - metal[k][0]));
+        metals = fmax(metals, fabs(sheet.colour.g[0] / one - metal[k][1]));
+        metals = fmax(metals, fabs(sheet.colour.b[0] / one - metal[k][2]));
+    }
+    ok(metals <= 1e-4, "%u: gold, silver, copper, aluminium have the reflectances of their measured indices (%.1e)", isa, metals);
+    sheet_fini(&sheet);
+}
+
+/* f(o, i) = f(i, o): sums and products commute, the quotients by the cosines leave a few roundings. */
+static void test_reciprocity(void)
+{
+    double worst = 0;
+    uint32_t pairs = 0;
+    struct sheet a, b;
+
+    init(&a, 1), init(&b, 1);
+    for (uint32_t k = 0; k < 6; k++) {
+        static const double alpha[6] = {1, 0.5, 0.1, 0.01, 1e-4, 1e-7};
+
+        set(&a, BY_INDEX, 0.4, 2.4, alpha[k]), set(&b, BY_INDEX, 0.4, 2.4, alpha[k]);
+        for (uint32_t i = 0; i < 64; i++) {
+            double near = k < 3 ? 1 : alpha[k], mu = fixed(500, i), other = mu + near * (fixed(501, i) - mu), *swap[2][3];
+
+            sheet_view(&a, normal, 0.5, 0), sheet_view(&b, normal, 0.5, 0);
+            swap[0][0] = (double *)a.at.ox, swap[0][1] = (double *)a.at.oy, swap[0][2] = (double *)a.at.oz;
+            swap[1][0] = (double *)b.at.ox, swap[1][1] = (double *)b.at.oy, swap[1][2] = (double *)b.at.oz;
+            sheet_toward(&a, 0, normal, mu, 0), sheet_toward(&b, 0, normal, other, M_PI + near * fixed(502, i));
+            swap[0][0][0] = b.toward.x[0], swap[0][1][0] = b.toward.y[0], swap[0][2][0] = b.toward.z[0];
+            swap[1][0][0] = a.toward.x[0], swap[1][1][0] = a.toward.y[0], swap[1][2][0] = a.toward.z[0];
+            sheet_evaluate(&a), sheet_evaluate(&b);
+            double in = normal[0] * a.toward.x[0] + normal[1] * a.toward.y[0] + normal[2] * a.toward.z[0];
+            double out = normal[0] * b.toward.x[0] + normal[1] * b.toward.y[0] + normal[2] * b.toward.z[0];
+            double f = a.colour.g[0] / in, g = b.colour.g[0] / out;
+            pairs += f > 0;
+            worst = fmax(worst, fabs(f - g) / (f > 0 ? f : 1));
+        }
+    }
+    ok(pairs > 300 && worst <= 8 * U, "%u: reciprocal to rounding, %u pairs (%.1f u)", isa, pairs, worst / U);
+    sheet_fini(&a), sheet_fini(&b);
+}
+
+/* Lobes down to 1e-7 rad, cosines down to 1e-8, numbers at the ends of their range: all finite, unit, above the horizon. */
+static void test_extremes(void)
+{
+    static const double alpha[] = {1e-7, 1e-6, 1e-4, 0.01, 1}, mu[] = {1e-320, 1e-90, 1e-8, 1e-4, 0.5, 1}, ends[] = {0, 0x1p-60, 0.5, 1 - U};
+    uint32_t bad = 0, drawn = 0, heavy = 0;
+    double sharp = 0, kept = 1;
+    struct sheet sheet;
+
+    init(&sheet, 1);
+    for (uint32_t a = 0; a < LENGTH(alpha); a++)
+        for (uint32_t m = 0; m < LENGTH(mu); m++) {
+            double sum = 0;
+
+            set(&sheet, BY_INDEX, 0.2, 3.9, alpha[a]);
+            sheet_view(&sheet, upright, mu[m], 5);
+            sheet_numbers(&sheet, 600, a * 8 + m);
+            for (uint32_t i = 0; i < 16; i++)
+                sheet.number[0][i] = ends[i / 4], sheet.number[1][i] = ends[i % 4];
+            for (int k = 0; k < 3; k++) { /* drawn; the opposite at the horizon and close to the mirror direction; anywhere, below the horizon too */
+                if (k == 0)
+                    sheet_draw(&sheet);
+                for (uint32_t i = 0; i < LANES && k == 1; i++)
+                    sheet_toward(&sheet, i, upright, i % 2 ? mu[m] : 1e-8, 5 + M_PI * (1 + alpha[a] * (i / 8) / LANES));
+                for (uint32_t i = 0; i < LANES && k == 2; i++) {
+                    double w[3];
+                    unit_vector(601, i, w);
+                    sheet.toward.x[i] = w[0], sheet.toward.y[i] = w[1], sheet.toward.z[i] = w[2];
+                }
+                sheet_density(&sheet);
+                sheet_evaluate(&sheet);
+                for (uint32_t i = 0; i < LANES; i++) {
+                    double x = sheet.toward.x[i], y = sheet.toward.y[i], z = sheet.toward.z[i], length = x * x + y * y + z * z, d = sheet.density[i];
+
+                    bad += !(isfinite(d) && d >= 0 && isfinite(sheet.colour.r[i]) && sheet.colour.r[i] >= 0 && isfinite(sheet.colour.b[i]));
+                    bad += k == 0 && !(length == 0 ? d == 0 && sheet.colour.g[i] == 0 : fabs(length - 1) < 8 * U && d > 0);
+                    bad += k == 2 && x * upright[0] + y * upright[1] + z * upright[2] <= 0 && (d != 0 || sheet.colour.g[i] != 0);
+                    heavy += k == 0 && d > 0 && sheet.colour.g[i] > d * (1 + 16 * U);
+                    drawn += k == 0 && d > 0;
+                    sum += k == 0 && d > 0 ? sheet.colour.g[i] / d / LANES : 0;
+                }
+            }
+            kept = a == 0 && mu[m] >= 1e-4 ? fmin(kept, sum) : kept; /* a mirror, but for F >= .86 */
+        }
+    ok(bad == 0 && drawn > 60000, "%u: finite at the extremes (%u wrong, %u drawn)", isa, bad, drawn);
+    ok(heavy == 0, "%u: no weight above 1 at the extremes", isa);
+    ok(kept > 0.9, "%u: alpha 1e-7 reflects as a mirror does: %.4f", isa, kept);
+    /* D at its peak is 1 / (pi alpha^2): with cosine c, f cos = D / (4 c) at the mirror direction, as G2 -> 1. */
+    for (uint32_t m = 3; m < LENGTH(mu); m++) {
+        double exact = 1 / (M_PI * 1e-14 * 4 * mu[m]);
+
+        set(&sheet, BY_REFLECTANCE, 1, 1, 1e-7);
+        sheet_view(&sheet, upright, mu[m], 5);
+        sheet_toward(&sheet, 0, upright, mu[m], 5 + M_PI);
+        sheet_evaluate(&sheet);
+        sharp = fmax(sharp, fabs(sheet.colour.g[0] / exact - 1));
+    }
+    ok(sharp < 1e-6, "%u: the peak at alpha 1e-7 is that of D (%.1e)", isa, sharp);
+    sheet_view(&sheet, upright, 1, 0);
+    for (uint32_t i = 0; i < LANES; i++) /* seen from below the shading normal */
+        ((double *)sheet.at.ox)[i] = -upright[0], ((double *)sheet.at.oy)[i] = -upright[1], ((double *)sheet.at.oz)[i] = -upright[2];
+    ok(albedo_drawn(&sheet, 1, 700).mean == 0, "%u: black where the outgoing direction is below the shading normal's horizon", isa);
+    sheet_fini(&sheet);
+}
+
+/* With geometric normals of their own: black exactly where either direction is below the shading normal's horizon or `toward` below the geometric one. */
+static void test_horizons(void)
+{
+    uint32_t wrong = 0, black = 0, geometric = 0;
+    struct sheet sheet;
+
+    init(&sheet, 0.5);
+    for (uint32_t i = 0; i < LANES; i++) {
+        double w[3];
+        unit_vector(610, i, w);
+        sheet.toward.x[i] = w[0], sheet.toward.y[i] = w[1], sheet.toward.z[i] = w[2];
+        unit_vector(611, i, w);
+        ((double *)sheet.at.ox)[i] = w[0], ((double *)sheet.at.oy)[i] = w[1], ((double *)sheet.at.oz)[i] = w[2];
+    }
+    sheet_evaluate(&sheet);
+    sheet_density(&sheet);
+    for (uint32_t i = 0; i < LANES; i++) {
+        double x = sheet.toward.x[i], y = sheet.toward.y[i], z = sheet.toward.z[i], in = sheet.at.nx[i] * x + sheet.at.ny[i] * y + sheet.at.nz[i] * z;
+        double out = sheet.at.nx[i] * sheet.at.ox[i] + sheet.at.ny[i] * sheet.at.oy[i] + sheet.at.nz[i] * sheet.at.oz[i];
+        int seen = in > 0 && out > 0, above = sheet.at.gx[i] * x + sheet.at.gy[i] * y + sheet.at.gz[i] * z > 0;
+
+        wrong += (sheet.colour.g[i] != 0) != (seen && above) || (sheet.density[i] > 0) != seen;
+        black += !seen && above;
+        geometric += seen && !above;
+    }
+    ok(wrong == 0 && black > 100 && geometric > 10, "%u: black below either horizon (%u, %u)", isa, black, geometric);
+    sheet_fini(&sheet);
+}
+
+/* Settings that vary give what the same settings give alone; the bits are those of the baseline. */
+static uint64_t test_varying(void)
+{
+    struct sheet sheet, one;
+    double *lane[15], s[15], wrong = 0;
+    uint64_t bits;
+
+    init(&sheet, 1), init(&one, 1);
+    for (uint32_t c = 0; c < 15; c++) {
+        lane[c] = numbers(LANES, 800 + c);
+        sheet.channel[c] = lane[c];
+        sheet.stride[c] = 1;
+        for (uint32_t i = 0; i < LANES && c == 0; i++)
+            lane[c][i] = i % 6;
+        for (uint32_t i = 0; i < LANES && c == 12; i++)
+            lane[c][i] = 1e-7 + lane[c][i] * (1 - 1e-7);
+    }
+    bits = sheet_bits(&sheet);
+    memcpy(one.toward.x, sheet.toward.x, LANES * sizeof(double));
+    memcpy(one.toward.y, sheet.toward.y, LANES * sizeof(double));
+    memcpy(one.toward.z, sheet.toward.z, LANES * sizeof(double));
+    for (uint32_t i = 0; i < 60; i++) {
+        for (uint32_t c = 0; c < 15; c++)
+            s[c] = lane[c][i];
+        sheet_set(&one, s);
+        sheet_evaluate(&one), sheet_density(&one);
+        wrong += one.colour.r[i] != sheet.colour.r[i] || one.colour.g[i] != sheet.colour.g[i] || one.colour.b[i] != sheet.colour.b[i];
+        wrong += one.density[i] != sheet.density[i];
+    }
+    ok(wrong == 0, "%u: settings may vary from lane to lane", isa);
+    ok(guarded(sheet.colour.r, LANES) && guarded(sheet.colour.b, LANES) && guarded(sheet.density, LANES) && guarded(sheet.toward.z, LANES),
+       "%u: nothing is written behind the lanes", isa);
+    for (uint32_t c = 0; c < 15; c++)
+        free(lane[c]);
+    sheet_fini(&sheet), sheet_fini(&one);
+    return bits;
+}
+
+static void test_create(void)
+{
+    static const struct {
+        double metal;
+        uint32_t reflectance, eta, k;
+        int32_t status;
+    } cases[] = {{BY_REFLECTANCE, 1, 0, 0, 0}, {BY_INDEX, 0, 1, 1, 0},   {GOLD, 0, 0, 0, 0},
+                 {BY_REFLECTANCE, 0, 1, 0, -1}, {BY_INDEX, 1, 0, 0, -1}, {SILVER, 0, 0, 1, -1}};
+    uint32_t wrong = 0;
+
+    for (uint32_t k = 0; k < LENGTH(cases); k++) {
+        double s[15];
+        uint32_t given[5] = {1, cases[k].reflectance, cases[k].eta, cases[k].k, 0};
+        struct mcr_values values = {sizeof values, 5, s, given};
+        struct mcr_creation with = {sizeof with, 0, &values, NULL, NULL, 16, 0};
+        struct mcr_context context = {.message = ""};
+        void *instance;
+
+        settings_of(s, cases[k].metal, 1, 1, 0.2);
+        wrong += plugin->create(&stand_in, &context, &with, &instance) != cases[k].status || (context.message[0] != 0) != (cases[k].status < 0);
+    }
+    ok(wrong == 0, "%u: a setting that would be ignored is an error", isa);
+}
+
+int main(void)
+{
+    const struct mcr_plugin *file = load("conductor");
+    uint64_t first = 0, bits;
+
+    for (isa = MCR_ISA_BASELINE; isa <= MCR_ISA_AVX512; isa++) {
+        plugin = descriptor_of(file, isa);
+        if (!plugin) {
+            tap_skip("an instruction set", "this processor or build lacks it");
+            continue;
+        }
+        ok(plugin->flags == MCR_MATERIAL_STATELESS, "%u: stateless", isa);
+        if (isa == MCR_ISA_BASELINE) { /* the others have its bits */
+            test_albedo();
+            test_draw();
+        }
+        test_fresnel();
+        test_reciprocity();
+        test_extremes();
+        test_horizons();
+        test_create();
+        bits = test_varying();
+        first = isa == MCR_ISA_BASELINE ? bits : first;
+        ok(bits == first, "%u: the bits of the baseline", isa);
+    }
+    return tap_done();
+}

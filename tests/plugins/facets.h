@@ -1,0 +1,241 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * Measurements of a scattering material through the stand-in for the host: points that share one normal and one outgoing direction, directional albedos,
+ * and whether draw, density and evaluate agree. The points of a test are counted by the caller.
+ */
+#ifndef TESTS_PLUGINS_FACETS_H
+#define TESTS_PLUGINS_FACETS_H
+
+#include "stand_in.h"
+
+#define CHANNELS 15 /* of 5 parameters */
+
+/* A material with the same settings in all lanes, and the arrays of one batch. */
+struct sheet {
+    const struct mcr_material_plugin *plugin;
+    double copies[CHANNELS][8];
+    const double *channel[CHANNELS];
+    uint32_t stride[CHANNELS];
+    struct mcr_inputs inputs;
+    uint32_t n;
+    struct mcr_points at;
+    struct mcr_directions toward;
+    struct mcr_colours colour;
+    double *density, *number[3];
+    struct mcr_context context;
+};
+
+/* `settings`: 3 numbers for each parameter. */
+static __attribute__((unused)) void sheet_set(struct sheet *s, const double *settings)
+{
+    uint32_t channels = 3 * s->plugin->head.parameter_count;
+
+    for (uint32_t c = 0; c < channels; c++) {
+        for (int k = 0; k < 8; k++)
+            s->copies[c][k] = settings[c];
+        s->channel[c] = s->copies[c];
+        s->stride[c] = 0;
+    }
+    s->inputs = (struct mcr_inputs){sizeof s->inputs, channels / 3, s->channel, s->stride};
+}
+
+static __attribute__((unused)) void sheet_init(struct sheet *s, const struct mcr_material_plugin *plugin, uint32_t n, const double *settings)
+{
+    size_t bytes = plugin->scratch_bytes ? plugin->scratch_bytes(NULL, n) : 0;
+
+    *s = (struct sheet){.plugin = plugin, .n = n, .at = points_array(n), .toward = directions_array(n), .density = array(n)};
+    s->colour = (struct mcr_colours){sizeof s->colour, n, array(n), array(n), array(n)};
+    for (int k = 0; k < 3; k++)
+        s->number[k] = array(n);
+    s->context.scratch = aligned_alloc(64, (bytes + 127) / 64 * 64);
+    memset(s->context.scratch, 0xff, (bytes + 127) / 64 * 64);
+    sheet_set(s, settings);
+}
+
+static __attribute__((unused)) void sheet_fini(struct sheet *s)
+{
+    free_points(&s->at);
+    free_directions(&s->toward);
+    free(s->colour.r), free(s->colour.g), free(s->colour.b), free(s->density), free(s->context.scratch);
+    for (int k = 0; k < 3; k++)
+        free(s->number[k]);
+}
+
+/* The frame of normal `n`. */
+static __attribute__((unused)) void frame(const double n[3], double t[3], double b[3])
+{
+    mcr_basis(n[0], n[1], n[2], &t[0], &t[1], &t[2], &b[0], &b[1], &b[2]);
+}
+
+/* All points get the normal n, for both kinds, and an outgoing direction of cosine mu with the azimuth phi. */
+static __attribute__((unused)) void sheet_view(struct sheet *s, const double n[3], double mu, double phi)
+{
+    double t[3], b[3], sine = sqrt((1 - mu) * (1 + mu)), *points[9];
+
+    points[0] = (double *)s->at.nx, points[1] = (double *)s->at.ny, points[2] = (double *)s->at.nz;
+    points[3] = (double *)s->at.gx, points[4] = (double *)s->at.gy, points[5] = (double *)s->at.gz;
+    points[6] = (double *)s->at.ox, points[7] = (double *)s->at.oy, points[8] = (double *)s->at.oz;
+    frame(n, t, b);
+    for (uint32_t i = 0; i < s->n; i++)
+        for (int c = 0; c < 3; c++) {
+            points[c][i] = points[3 + c][i] = n[c];
+            points[6 + c][i] = sine * cos(phi) * t[c] + sine * sin(phi) * b[c] + mu * n[c];
+        }
+}
+
+static __attribute__((unused)) void sheet_toward(struct sheet *s, uint32_t i, const double n[3], double mu, double phi)
+{
+    double t[3], b[3], sine = sqrt((1 - mu) * (1 + mu));
+
+    frame(n, t, b);
+    s->toward.x[i] = sine * cos(phi) * t[0] + sine * sin(phi) * b[0] + mu * n[0];
+    s->toward.y[i] = sine * cos(phi) * t[1] + sine * sin(phi) * b[1] + mu * n[1];
+    s->toward.z[i] = sine * cos(phi) * t[2] + sine * sin(phi) * b[2] + mu * n[2];
+}
+
+static __attribute__((unused)) void sheet_numbers(struct sheet *s, uint64_t stream, uint64_t batch)
+{
+    for (uint32_t i = 0; i < s->n; i++)
+        for (uint32_t k = 0; k < 3; k++)
+            s->number[k][i] = fixed(stream, 3 * (batch * s->n + i) + k);
+}
+
+static __attribute__((unused)) void sheet_draw(struct sheet *s)
+{
+    s->plugin->draw(&stand_in, &s->context, NULL, &s->inputs, &s->at, (const double *const *)s->number, &s->toward, s->density);
+}
+
+static __attribute__((unused)) void sheet_density(struct sheet *s)
+{
+    s->plugin->density(&stand_in, &s->context, NULL, &s->inputs, &s->at, &s->toward, s->density);
+}
+
+static __attribute__((unused)) void sheet_evaluate(struct sheet *s)
+{
+    s->plugin->evaluate(&stand_in, &s->context, NULL, &s->inputs, &s->at, &s->toward, &s->colour);
+}
+
+/* A mean and its standard error. */
+struct estimate {
+    double mean, error;
+    double most;  /* the largest f cos / density */
+    uint32_t bad; /* lanes that were not finite or were negative */
+};
+
+/* The directional albedo (green) by the material's own sampling. */
+static __attribute__((unused)) struct estimate albedo_drawn(struct sheet *s, uint32_t batches, uint64_t stream)
+{
+    struct estimate e = {0, 0, 0, 0};
+    double sum = 0, squares = 0, count = (double)batches * s->n;
+
+    for (uint32_t k = 0; k < batches; k++) {
+        sheet_numbers(s, stream, k);
+        sheet_draw(s);
+        sheet_evaluate(s);
+        for (uint32_t i = 0; i < s->n; i++) {
+            double value = s->density[i] > 0 ? s->colour.g[i] / s->density[i] : 0;
+
+            e.bad += !(isfinite(s->density[i]) && isfinite(value) && value >= 0);
+            e.most = value > e.most ? value : e.most;
+            sum += value;
+            squares += value * value;
+        }
+    }
+    e.mean = sum / count;
+    e.error = sqrt(fmax(squares / count - e.mean * e.mean, 0) / (count - 1)); /* rounding may leave less than 0 of a variance of 0 */
+    return e;
+}
+
+/*
+ * The directional albedo (green), and the integral of the density, over rows x columns directions that are spread uniformly over the hemisphere: the
+ * midpoint rule in the cosine and the azimuth.
+ */
+static __attribute__((unused)) double albedo_uniform(struct sheet *s, const double n[3], uint32_t rows, uint32_t columns, double *mass)
+{
+    double sum = 0, densities = 0;
+    uint32_t lane = 0;
+
+    for (uint32_t k = 0; k < rows * columns; k++) {
+        sheet_toward(s, lane, n, (k / columns + 0.5) / rows, 2 * M_PI * (k % columns + 0.5) / columns);
+        if (++lane < s->n && k + 1 < rows * columns)
+            continue;
+        sheet_density(s);
+        sheet_evaluate(s);
+        for (uint32_t i = 0; i < lane; i++)
+            sum += s->colour.g[i], densities += s->density[i];
+        lane = 0;
+    }
+    *mass = densities * 2 * M_PI / ((double)rows * columns);
+    return sum * 2 * M_PI / ((double)rows * columns);
+}
+
+/*
+ * Chi-square of drawn directions over 16 x 16 cells of (cosine, azimuth), the last cell being "nothing drawn", against the density integrated by 64 x 64
+ * points a cell; as a normal deviate (Wilson and Hilferty). Cells with fewer than 10 expected are put together.
+ */
+static __attribute__((unused)) double chi_square(struct sheet *s, const double n[3], uint32_t batches, uint64_t stream, double *mass)
+{
+    enum { CELLS = 16, FINE = 64 };
+    static double expected[CELLS * CELLS + 1];
+    static uint64_t count[CELLS * CELLS + 1];
+    double t[3], b[3], chi = 0, few = 0, few_count = 0, total = (double)batches * s->n;
+    uint32_t lane = 0, df = 0;
+
+    frame(n, t, b);
+    memset(count, 0, sizeof count);
+    memset(expected, 0, sizeof expected);
+    for (uint32_t k = 0; k < batches; k++) {
+        sheet_numbers(s, stream, k);
+        sheet_draw(s);
+        for (uint32_t i = 0; i < s->n; i++) {
+            double x = s->toward.x[i], y = s->toward.y[i], z = s->toward.z[i], mu = x * n[0] + y * n[1] + z * n[2];
+            double angle = atan2(x * b[0] + y * b[1] + z * b[2], x * t[0] + y * t[1] + z * t[2]) / (2 * M_PI);
+            int row = (int)(mu * CELLS), column = (int)((angle - floor(angle)) * CELLS);
+
+            row = row < CELLS ? row : CELLS - 1, column = column < CELLS ? column : CELLS - 1;
+            count[x == 0 && y == 0 && z == 0 ? CELLS * CELLS : row * CELLS + column]++;
+        }
+    }
+    for (uint32_t fine = 0; fine < CELLS * FINE * CELLS * FINE; fine++) {
+        uint32_t row = fine / (CELLS * FINE), column = fine % (CELLS * FINE);
+
+        sheet_toward(s, lane, n, (row + 0.5) / (CELLS * FINE), 2 * M_PI * (column + 0.5) / (CELLS * FINE));
+        if (++lane < s->n && fine + 1 < CELLS * FINE * CELLS * FINE)
+            continue;
+        sheet_density(s);
+        for (uint32_t i = 0; i < lane; i++) {
+            uint32_t f = fine + 1 - lane + i;
+            expected[f / (CELLS * FINE) / FINE * CELLS + f % (CELLS * FINE) / FINE] += s->density[i] * 2 * M_PI / ((double)(CELLS * FINE) * (CELLS * FINE));
+        }
+        lane = 0;
+    }
+    *mass = 0;
+    for (uint32_t c = 0; c < CELLS * CELLS; c++)
+        *mass += expected[c];
+    expected[CELLS * CELLS] = *mass < 1 ? 1 - *mass : 0;
+    for (uint32_t c = 0; c <= CELLS * CELLS; c++) {
+        double e = expected[c] * total, o = (double)count[c];
+
+        few += e < 10 ? e : 0, few_count += e < 10 ? o : 0;
+        chi += e < 10 ? 0 : (o - e) * (o - e) / e;
+        df += e >= 10;
+    }
+    chi += few > 0 ? (few_count - few) * (few_count - few) / (few < 1 ? 1 : few) : few_count;
+    return (cbrt(chi / df) - (1 - 2 / (9.0 * df))) / sqrt(2 / (9.0 * df));
+}
+
+/* A checksum over the bits of draw, density and evaluate at the stand-in's points with settings of which some vary. */
+static __attribute__((unused)) uint64_t sheet_bits(struct sheet *s)
+{
+    uint64_t sum = 0;
+
+    sheet_numbers(s, 95, 0);
+    sheet_draw(s);
+    sheet_evaluate(s);
+    for (uint32_t i = 0; i < s->n; i++)
+        sum = mcr_mix64(sum + mcr_bits(s->toward.x[i]) + 3 * mcr_bits(s->colour.r[i]) + 5 * mcr_bits(s->colour.g[i]) + 7 * mcr_bits(s->colour.b[i]) +
+                        9 * mcr_bits(s->density[i]));
+    return sum;
+}
+
+#endif
