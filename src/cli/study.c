@@ -29,14 +29,14 @@ static void duration(double seconds, char text[32])
 
 static void progress(void *data, const struct mcr_study_progress *at)
 {
-    char text[PROGRESS_WIDTH + 1], elapsed[32], left[32] = "";
+    char text[256], elapsed[32], left[32] = "";
     (void)data;
     duration(at->seconds, elapsed);
     if (!isnan(at->left))
         duration(at->left, left);
     snprintf(text, sizeof text, "%s %u of %u: %.40s, %u spp, depth %u; %s%s%s", at->what, at->done + 1, at->total, at->label, at->spp, at->depth, elapsed,
              *left ? ", ETA " : "", left);
-    fprintf(stderr, "\r%-*s", PROGRESS_WIDTH, text);
+    fprintf(stderr, "\r%-*.*s", PROGRESS_WIDTH, PROGRESS_WIDTH, text);
 }
 
 static void no_progress(int shown)
