@@ -150,7 +150,7 @@ int main(void)
     good("independent(stratified(uniform))", "independent(stratified(uniform))", 2, 2, MCR_COVERS_REFLECTION);
 
     bad("cosin", 1, "--sampler:1:1: error: unknown sampler 'cosin', expected the name of a plugin\n--sampler:1:1: note: did you mean 'cosine'?\n");
-    bad("xyzzyplugh", 1, "--sampler:1:1: error: unknown sampler 'xyzzyplugh', expected the name of a plugin\nnote: plugins found: cosine, emitter, ...");
+    bad("xyzzyplugh", 1, "--sampler:1:1: error: unknown sampler 'xyzzyplugh', expected the name of a plugin\nnote: plugins found: bsdf, conductor, ...");
     bad("lambert", 1, "--sampler:1:1: error: 'lambert' is a material, expected a sampler\n");
     bad("3", 1, "--sampler:1:1: error: this is a number, expected a sampler, as in mixture(cosine 1, light 1)\n");
     bad("light", 0, "--sampler:1:1: error: 'light' has nothing to draw: no emitter of this scene can be sampled\n");
