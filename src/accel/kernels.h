@@ -91,14 +91,16 @@ static inline __attribute__((always_inline)) int kernel_ellipsoid(const double *
     return (discriminant >= 0) & (t > 0);
 }
 
-/*
- * The inverses of three cosines with one division, which is what the loops wait for. A cosine below about 1e-100 counts as that much, so that nothing is
- * divided by zero and products of three stay in range; the sum is exact from 1e-84 on.
- */
+/* A cosine moved away from 0 by 1e-100, so that nothing is divided by zero and products of three stay in range. From 2e-84 on it stays as it is. */
+static inline __attribute__((always_inline)) double kernel_off_zero(double x)
+{
+    return x + __builtin_copysign(1e-100, x);
+}
+
+/* The inverses of three cosines with one division, which is what the loops wait for. */
 static inline __attribute__((always_inline)) void kernel_inverse(double x, double y, double z, double inverse[3])
 {
-    const double least = 1e-100;
-    double a = x + least, b = y + least, c = z + least;
+    double a = kernel_off_zero(x), b = kernel_off_zero(y), c = kernel_off_zero(z);
     double bc = b * c, all = 1 / (a * bc);
     inverse[0] = all * bc;
     inverse[1] = all * (a * c);
@@ -169,10 +171,9 @@ static inline __attribute__((always_inline)) int kernel_box(const double *k, dou
  */
 static inline __attribute__((always_inline)) int kernel_upright(const double *k, int axis, double o, double inverse, double p, double d, double q, double e, double *face, double *at)
 {
-    const double least = 1e-100; /* as in kernel_inverse */
     double co = o - k[0], cp = p - k[1], cq = q - k[2];
     double x = k[5] * cp + k[6] * cq, y = k[7] * cp + k[8] * cq;
-    double a = k[5] * d + k[6] * e + least, b = k[7] * d + k[8] * e + least, all = 1 / (a * b), ia = all * b, ib = all * a;
+    double a = kernel_off_zero(k[5] * d + k[6] * e), b = kernel_off_zero(k[7] * d + k[8] * e), all = 1 / (a * b), ia = all * b, ib = all * a;
     struct mcr_slab own = kernel_slab(-co * inverse, (k[4] - co) * inverse, inverse * k[3]);
     struct mcr_slab next = kernel_slab(-x * ia, (k[9] - x) * ia, ia), last = kernel_slab(-y * ib, (k[10] - y) * ib, ib);
     return kernel_slabs(own, next, last, axis, (axis + 1) % 3, (axis + 2) % 3, face, at);

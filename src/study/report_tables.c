@@ -228,7 +228,7 @@ void mcr_page_quality(struct mcr_page *page)
                                "peak\u00a0",
                     plan->how.encoding == MCR_ENCODING_SRGB8 ? "8-bit sRGB codes" : "linear values");
     mcr_text_short(page->out, mcr_metrics_peak(&plan->how), 6);
-    mcr_text_put(page->out, "; geometric means for MSE and its like. <i>Error</i> is the MSE without the reference\u2019s own noise; "
+    mcr_text_put(page->out, ". <i>Error</i> is the MSE without the reference\u2019s own noise; "
                             "<i>efficiency</i> is 1/(error \u00d7 time), "
                             "relative to <code>");
     mcr_page_user(page, plan->baseline < plan->sampler_count ? plan->sampler[plan->baseline] : "");

@@ -20,8 +20,8 @@ const char *mcr_verdict_word(uint32_t verdict)
 
 const char *mcr_target_word(uint32_t target)
 {
-    static const char *const word[] = {"measured", "extrapolated", "unreachable"};
-    return target <= MCR_TARGET_UNREACHABLE ? word[target] : "unreachable";
+    static const char *const word[] = {"measured", "extrapolated", "unreachable", "unknown"};
+    return target <= MCR_TARGET_UNKNOWN ? word[target] : "unknown";
 }
 
 const char *mcr_precision_word(uint32_t precision)

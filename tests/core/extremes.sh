@@ -113,4 +113,25 @@ for lamp in 'quad { corner (-1, 2, -1)   u (1, 0, 0)   v (0, 0, 1)   material la
     holds 'plain > 0.1005 && abs(mean - plain) <= 4 * sqrt(error ^ 2 + plain_error ^ 2)' mean="$mean" plain="$plain" error="$error" plain_error="$plain_error"
     point $? "${lamp%% *} alone, mirrored: $mean, plain: $plain"
 done
+
+# Rays that run almost along planes: the cosine to a side is tiny, of either sign, or the very number by which the kernels keep it off zero.
+for tilt in 0 1e-100 -1e-100 2e-100 -2e-100 1e-300 -1e-300 1e-84 -1e-84; do
+    for shape in 'quad { corner (-4, -4, 0)   u (8, 0, 0)   v (0, 8, 0)   material lamp }' 'box { min (-4, -4, -1)   max (4, 4, 0)   material lamp }' \
+        'box { min (-4, -4, -1)   max (4, 4, 0)   material lamp   transform { rotate (0, 0, 1, 30) } }' \
+        'box { min (-4, -4, -1)   max (4, 4, 0)   material lamp   transform { rotate (1, 2, 3, 20) } }'; do
+        for accel in list bvh; do
+            cat >"$TMPDIR/scene.scn" <<TEXT
+mcrender 1
+camera orthographic { from (0, 0, 5)   to ($tilt, $tilt, 4)   height 2 }
+film { size (8, 8) }
+render { sampler cosine   depth 0   spp 4 }
+material lamp emitter { radiance 1 }
+$shape
+TEXT
+            render "$TMPDIR/scene.scn" --accel $accel
+            holds 'mean == 1' mean="$mean"
+            point $? "a view tilted by $tilt, ${shape%%\{*}$accel: mean $mean"
+        done
+    done
+done
 finish

@@ -493,11 +493,25 @@ static int write_pages(const char *folder)
     return status ? 1 : 0;
 }
 
+/* The words that the manual promises, by themselves: the rest of this file takes them from where the report does. */
+static void test_promised_words(void)
+{
+    static const char *const target[] = {[MCR_TARGET_MEASURED] = "measured", [MCR_TARGET_EXTRAPOLATED] = "extrapolated",
+                                         [MCR_TARGET_UNREACHABLE] = "unreachable", [MCR_TARGET_UNKNOWN] = "unknown"};
+    static const char *const verdict[] = {[MCR_VERDICT_BETTER] = "better", [MCR_VERDICT_WORSE] = "worse", [MCR_VERDICT_UNKNOWN] = "unknown",
+                                          [MCR_VERDICT_EXCLUDED] = "excluded"};
+    for (uint32_t i = 0; i < 4; i++) {
+        ok(strcmp(mcr_target_word(i), target[i]) == 0, "target %u is %s", i, target[i]);
+        ok(strcmp(mcr_verdict_word(i), verdict[i]) == 0, "verdict %u is %s", i, verdict[i]);
+    }
+}
+
 int main(int argc, char **argv)
 {
     static struct sample samples[VARIANTS];
     if (argc == 3 && !strcmp(argv[1], "--write"))
         return write_pages(argv[2]);
+    test_promised_words();
     for (size_t i = 0; i < VARIANTS; i++) {
         sample_init(&samples[i], &variants[i].options, scratch(variants[i].name));
         test_json(&variants[i], &samples[i]);
