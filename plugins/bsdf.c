@@ -16,7 +16,7 @@ static int32_t techniques(const struct mcr_host *host, struct mcr_context *conte
 {
     (void)host, (void)context, (void)instance;
     technique[0].kind = MCR_TECHNIQUE_DIRECTION;
-    technique[0].covers = MCR_COVERS_REFLECTION | MCR_COVERS_TRANSMISSION | MCR_COVERS_DELTA;
+    technique[0].covers = MCR_COVERS_REFLECTION | MCR_COVERS_TRANSMISSION;
     technique[0].continues = 1;
     technique[0].dimensions = MCR_MATERIAL_DIMENSIONS;
     *count = 1;

@@ -34,7 +34,7 @@ static int32_t techniques(const struct mcr_host *host, struct mcr_context *conte
 {
     (void)instance;
     technique[MATERIAL].kind = MCR_TECHNIQUE_DIRECTION;
-    technique[MATERIAL].covers = MCR_COVERS_REFLECTION | MCR_COVERS_TRANSMISSION | MCR_COVERS_DELTA;
+    technique[MATERIAL].covers = MCR_COVERS_REFLECTION | MCR_COVERS_TRANSMISSION;
     technique[MATERIAL].continues = 1;
     technique[MATERIAL].dimensions = MCR_MATERIAL_DIMENSIONS;
     *count = 1;

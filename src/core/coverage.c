@@ -6,14 +6,13 @@
 
 void mcr_coverage(const struct mcr_scene *scene, struct mcr_coverage *coverage)
 {
-    /* Nothing covers mirror-like lobes yet, whatever a sampler declares: the core never asks a material for them. */
+    /* Mirror-like lobes are followed under every sampler. */
     static const struct {
         uint32_t does, covers;
         const char *what;
     } need[] = {
         {MCR_MATERIAL_REFLECTS, MCR_COVERS_REFLECTION, "reflected"},
         {MCR_MATERIAL_TRANSMITS, MCR_COVERS_TRANSMISSION, "transmitted"},
-        {MCR_MATERIAL_DELTA, 0, "mirrored"},
     };
     const struct mcr_node *directions = scene->sampler->directions;
     uint32_t covers = 0, does = 0;

@@ -19,16 +19,24 @@ extern "C" {
 #define MCR_MATERIAL_DELTA 4u       /* has mirror-like lobes, told by `delta` */
 #define MCR_MATERIAL_EMITS_FRONT 8u
 #define MCR_MATERIAL_EMITS_BACK 16u
+#define MCR_MATERIAL_INTERIOR 32u   /* bounds a medium: `index`, `attenuation` and `priority` of its traits */
+#define MCR_MATERIAL_PASSES 64u     /* lets light cross straight on as if there were nothing, told by `passes` */
 
 /* Flags of descriptors. */
 /* Operations read mcr_inputs, not the instance: one call may hold points of several materials of this plugin (any stride may be 1 then). */
 #define MCR_MATERIAL_STATELESS 1u
+/* Operations read the tangents of struct mcr_points. */
+#define MCR_MATERIAL_TANGENTS 2u
 
 /* What the host has to know of a material before the first ray. */
 struct mcr_material_traits {
     uint32_t size;
     uint32_t does;        /* MCR_MATERIAL_REFLECTS, ... */
     double radiance[3];   /* emitted, a mean over the surface: for choosing among emitters, not for the image */
+    /* With MCR_MATERIAL_INTERIOR: what is behind the front side, up to where the surface closes. */
+    double index;          /* of refraction, > 0 */
+    double attenuation[3]; /* extinction by absorption, 1 / scene length, >= 0: radiance falls as exp(-attenuation * distance) */
+    double priority;       /* where interiors overlap, the highest one counts (Schmidt and Budge, "Simple nested dielectrics in ray traced images", 2002) */
 };
 
 /* One colour for each of n lanes. */
@@ -73,12 +81,26 @@ struct mcr_material_plugin {
      * Delta lobes: with number[0] chooses one of them, or none. Stores for a lobe its direction, the probability with which it is
      * chosen, and as `weight` the radiance that it passes on, relative to the radiance that arrives along the direction; the weight is
      * not divided by the probability: the core does that. Where no lobe was chosen, stores direction (0, 0, 0), the probability of
-     * that, and weight 0; the path then goes on by `evaluate` and a technique's density. NULL if there is none.
+     * that, and weight 0; the path then goes on by `evaluate` and a technique's density. Takes MCR_DELTA_DIMENSIONS numbers, and the core
+     * calls it under every sampler. NULL if there is none.
      */
     int32_t (*delta)(const struct mcr_host *host, struct mcr_context *context, const void *instance, const struct mcr_inputs *inputs,
                      const struct mcr_points *at, const double *const *number, const struct mcr_directions *out, double *probability,
                      const struct mcr_colours *weight);
+
+    /*
+     * The share of light that crosses the surface straight on, in [0, 1] for each colour: opacity 1 - passes. It is no scattering event, and rays
+     * toward emitters cross too. What `evaluate`, `delta` and `emission` tell is for the surface as it is, the crossing light taken off. NULL if
+     * nothing crosses.
+     */
+    int32_t (*passes)(const struct mcr_host *host, struct mcr_context *context, const void *instance, const struct mcr_inputs *inputs,
+                      const struct mcr_points *at, const struct mcr_colours *out);
+    /* The share of light that the surface scatters, about, in [0, 1]: for feature layers, not for the image. NULL: the host estimates it. */
+    int32_t (*albedo)(const struct mcr_host *host, struct mcr_context *context, const void *instance, const struct mcr_inputs *inputs,
+                      const struct mcr_points *at, const struct mcr_colours *out);
 };
+
+#define MCR_DELTA_DIMENSIONS 1u
 
 #ifdef __cplusplus
 }

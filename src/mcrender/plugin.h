@@ -57,6 +57,7 @@ extern "C" {
 #define MCR_TYPE_INTEGER 2u /* slot 0, a whole number of magnitude at most 2^53 */
 #define MCR_TYPE_COLOUR 3u  /* slots 0-2: red, green, blue, linear Rec. 709 */
 #define MCR_TYPE_CHOICE 4u  /* slot 0: the index of the word in `choices` */
+#define MCR_TYPE_MATERIAL 5u /* of materials only; slot 0: which of the children of struct mcr_creation it is; the scene gives a material's name */
 
 /* Flags of parameters. */
 #define MCR_PARAMETER_REQUIRED 1u  /* the scene must set it; `fallback` is unused */
@@ -114,6 +115,8 @@ struct mcr_points {
     const double *ox, *oy, *oz; /* outgoing direction: toward where the path came from */
     const double *side;         /* +1 where the outgoing direction is on the front of the surface, -1 on its back */
     const double *wanted;       /* 0 in lanes whose results nobody looks at, which need not be computed; NULL: all are wanted */
+    const double *tx, *ty, *tz; /* tangent: unit, orthogonal to the shading normal, along growing u; NULL unless a material asks (MCR_MATERIAL_TANGENTS) */
+    const double *here, *beyond; /* index of refraction on the side of the outgoing direction and on the other; NULL: no material has an interior */
 };
 
 /* n unit directions that leave the surface. (0, 0, 0) means that nothing was drawn in that lane. */

@@ -8,7 +8,7 @@
 #ifndef MCRENDER_SAMPLER_H
 #define MCRENDER_SAMPLER_H
 
-#include <mcrender/plugin.h>
+#include <mcrender/material.h>
 #include <string.h>
 
 #ifdef __cplusplus
@@ -124,7 +124,7 @@ MCR_INLINE void mcr_to_world(double nx, double ny, double nz, double x, double y
 /* What a technique covers: the directions at which its density is positive wherever a material scatters there. */
 #define MCR_COVERS_REFLECTION 1u   /* the whole hemisphere of the outgoing direction */
 #define MCR_COVERS_TRANSMISSION 2u /* the whole opposite hemisphere */
-#define MCR_COVERS_DELTA 4u        /* mirror-like lobes, by asking the material */
+/* Mirror-like lobes need no technique: the core asks the material for them under every sampler. */
 #define MCR_COVERS_EMITTERS 8u     /* all directions toward emitters that can be sampled */
 
 /* One way in which a node draws. A node has 1 to MCR_MAX_TECHNIQUES of them. */
@@ -287,6 +287,29 @@ struct mcr_host {
 
     /* 1 if the scene has emitters that can be sampled, 0 if not; valid from create on. */
     uint32_t (*has_lights)(const struct mcr_host *host, struct mcr_context *context);
+
+    /*
+     * Materials inside materials: the children that parameters of MCR_TYPE_MATERIAL name. The host evaluates their inputs at the points, which
+     * are those that the operation was given, all of them and in the same arrays; only `wanted` may differ. Traits are told from create on. An
+     * operation that the child lacks returns MCR_E_UNSUPPORTED: its traits say what it does.
+     */
+    int32_t (*material_child_traits)(const struct mcr_host *host, struct mcr_context *context, const struct mcr_child *child,
+                                     struct mcr_material_traits *traits);
+    int32_t (*material_child_evaluate)(const struct mcr_host *host, struct mcr_context *context, const struct mcr_child *child,
+                                       const struct mcr_points *at, const struct mcr_directions *toward, const struct mcr_colours *out);
+    int32_t (*material_child_draw)(const struct mcr_host *host, struct mcr_context *context, const struct mcr_child *child,
+                                   const struct mcr_points *at, const double *const *number, const struct mcr_directions *out, double *density);
+    int32_t (*material_child_density)(const struct mcr_host *host, struct mcr_context *context, const struct mcr_child *child,
+                                      const struct mcr_points *at, const struct mcr_directions *toward, double *density);
+    int32_t (*material_child_emission)(const struct mcr_host *host, struct mcr_context *context, const struct mcr_child *child,
+                                       const struct mcr_points *at, const struct mcr_colours *out);
+    int32_t (*material_child_delta)(const struct mcr_host *host, struct mcr_context *context, const struct mcr_child *child,
+                                    const struct mcr_points *at, const double *const *number, const struct mcr_directions *out,
+                                    double *probability, const struct mcr_colours *weight);
+    int32_t (*material_child_passes)(const struct mcr_host *host, struct mcr_context *context, const struct mcr_child *child,
+                                     const struct mcr_points *at, const struct mcr_colours *out);
+    int32_t (*material_child_albedo)(const struct mcr_host *host, struct mcr_context *context, const struct mcr_child *child,
+                                     const struct mcr_points *at, const struct mcr_colours *out);
 };
 
 #define MCR_LIGHT_DIMENSIONS 3u

@@ -8,8 +8,9 @@
 
 #include "plugin/create.h"
 
-#define ALL_COVERS (MCR_COVERS_REFLECTION | MCR_COVERS_TRANSMISSION | MCR_COVERS_DELTA | MCR_COVERS_EMITTERS)
-#define ALL_DOES (MCR_MATERIAL_REFLECTS | MCR_MATERIAL_TRANSMITS | MCR_MATERIAL_DELTA | MCR_MATERIAL_EMITS_FRONT | MCR_MATERIAL_EMITS_BACK)
+#define ALL_COVERS (MCR_COVERS_REFLECTION | MCR_COVERS_TRANSMISSION | MCR_COVERS_EMITTERS)
+#define ALL_DOES (MCR_MATERIAL_REFLECTS | MCR_MATERIAL_TRANSMITS | MCR_MATERIAL_DELTA | MCR_MATERIAL_EMITS_FRONT | MCR_MATERIAL_EMITS_BACK | \
+                  MCR_MATERIAL_INTERIOR | MCR_MATERIAL_PASSES)
 
 static const char *status_name(int32_t status)
 {
@@ -204,6 +205,13 @@ static const char *traits_mistake(const struct mcr_material_plugin *plugin, cons
         return "has delta lobes, but no operation delta";
     if (traits->does & (MCR_MATERIAL_EMITS_FRONT | MCR_MATERIAL_EMITS_BACK) && !plugin->emission)
         return "emits, but has no operation emission";
+    if (traits->does & MCR_MATERIAL_PASSES && !plugin->passes)
+        return "lets light pass, but has no operation passes";
+    if (traits->does & MCR_MATERIAL_INTERIOR && (!(traits->index > 0) || !isfinite(traits->index) || !isfinite(traits->priority)))
+        return "has an interior whose index of refraction is not above 0, or whose priority is not finite";
+    for (int c = 0; c < 3; c++)
+        if (traits->does & MCR_MATERIAL_INTERIOR && (!(traits->attenuation[c] >= 0) || !isfinite(traits->attenuation[c])))
+            return "tells of an attenuation that is negative or not finite";
     for (int c = 0; c < 3; c++)
         if (!(traits->radiance[c] >= 0) || !isfinite(traits->radiance[c]))
             return "tells of a radiance that is negative or not finite";

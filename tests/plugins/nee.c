@@ -275,7 +275,7 @@ static int tells(const struct mcr_technique *technique, uint32_t kind, uint32_t 
     return technique->kind == kind && technique->covers == covers && technique->continues == continues && technique->dimensions == 3;
 }
 
-#define ALL (MCR_COVERS_REFLECTION | MCR_COVERS_TRANSMISSION | MCR_COVERS_DELTA)
+#define ALL (MCR_COVERS_REFLECTION | MCR_COVERS_TRANSMISSION)
 
 static void test_bsdf(const struct mcr_directions_plugin *plugin)
 {
