@@ -140,7 +140,7 @@ static void test_traits(uint32_t does, double radiance, int32_t returns, const c
     struct mcr_node node = {.descriptor = &material.head};
     struct mcr_material_traits traits_read;
 
-    told_traits = (struct mcr_material_traits){sizeof told_traits, does, {0, radiance, 0}};
+    told_traits = (struct mcr_material_traits){.size = sizeof told_traits, .does = does, .radiance = {0, radiance, 0}};
     status = returns;
     ok(mcr_material_traits(&node, diagnostics, &traits_read) == -1 && says(diagnostics, expected, 1), "%s", expected);
     status = MCR_OK;

@@ -147,7 +147,8 @@ static __attribute__((unused)) struct mcr_points points_array(uint32_t n)
         }
         a[12][i] = i % 2 ? 1 : -1;
     }
-    return (struct mcr_points){sizeof(struct mcr_points), n, a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], a[8], a[9], a[10], a[11], a[12], NULL};
+    return (struct mcr_points){.size = sizeof(struct mcr_points), .n = n, .px = a[0], .py = a[1], .pz = a[2], .nx = a[3], .ny = a[4], .nz = a[5],
+                               .gx = a[6], .gy = a[7], .gz = a[8], .ox = a[9], .oy = a[10], .oz = a[11], .side = a[12]};
 }
 
 static __attribute__((unused)) void free_points(struct mcr_points *at)
