@@ -22,7 +22,7 @@ static void *cut(struct cutter *c, size_t count, size_t size)
     return at;
 }
 
-static void cut_paths(struct cutter *c, struct mcr_paths *paths, uint32_t lanes)
+static void cut_paths(struct cutter *c, struct mcr_paths *paths, uint32_t lanes, int interiors)
 {
     paths->r = cut(c, lanes, sizeof(double));
     paths->g = cut(c, lanes, sizeof(double));
@@ -33,6 +33,8 @@ static void cut_paths(struct cutter *c, struct mcr_paths *paths, uint32_t lanes)
     paths->planned = cut(c, lanes, sizeof(uint32_t));
     paths->bounce = cut(c, lanes, sizeof(uint32_t));
     paths->slot = cut(c, lanes, sizeof(uint32_t));
+    for (uint32_t i = 0; i < MCR_INTERIORS && interiors; i++)
+        paths->inside[i] = cut(c, lanes, sizeof(uint32_t));
 }
 
 /* Arrays for combining techniques. */
@@ -52,6 +54,29 @@ static void cut_light(struct cutter *c, struct mcr_light_lanes *l, uint32_t lane
     l->of = cut(c, lanes, sizeof *l->of);
 }
 
+/* Arrays for mirror-like lobes. */
+static void cut_lobes(struct cutter *c, struct mcr_lobes *l, uint32_t lanes)
+{
+    double **array[] = {&l->number, &l->none, &l->x, &l->y, &l->z, &l->probability, &l->r, &l->g, &l->b};
+    for (size_t i = 0; i < sizeof array / sizeof *array; i++)
+        *array[i] = cut(c, lanes, sizeof(double));
+}
+
+/* Arrays for rays that cross surfaces. */
+static void cut_crossing(struct cutter *c, struct mcr_batch *b)
+{
+    struct mcr_crossing_lanes *l = &b->crossing_lanes;
+    double **array[] = {&l->px, &l->py, &l->pz, &l->nx, &l->ny, &l->nz, &l->ox, &l->oy, &l->oz, &l->side, &l->r, &l->g, &l->b, &l->t};
+    uint32_t **whole[] = {&l->material, &l->of, &l->active, &l->asked, &l->going};
+    for (size_t i = 0; i < sizeof array / sizeof *array; i++)
+        *array[i] = cut(c, b->lanes, sizeof(double));
+    for (size_t i = 0; i < sizeof whole / sizeof *whole; i++)
+        *whole[i] = cut(c, b->lanes, sizeof(uint32_t));
+    l->primitive = cut(c, b->lanes, sizeof *l->primitive);
+    l->hit = cut(c, b->lanes, sizeof *l->hit);
+    b->crossing = cut(c, b->lanes, sizeof *b->crossing);
+}
+
 static void cut_all(struct cutter *c, struct mcr_batch *b)
 {
     const struct mcr_core *core = b->core;
@@ -65,8 +90,8 @@ static void cut_all(struct cutter *c, struct mcr_batch *b)
         *of_rays[i] = cut(c, rays, sizeof(double));
     b->hit = cut(c, rays, sizeof *b->hit);
     b->source = cut(c, rays, sizeof *b->source);
-    cut_paths(c, &b->state, b->lanes);
-    cut_paths(c, &b->sorted, b->lanes);
+    cut_paths(c, &b->state, b->lanes, core->interiors);
+    cut_paths(c, &b->sorted, b->lanes, core->interiors);
     for (size_t i = 0; i < sizeof of_points / sizeof *of_points; i++)
         *of_points[i] = cut(c, b->lanes, sizeof(double));
     if (!core->surfaces.smooth) {
@@ -101,6 +126,14 @@ static void cut_all(struct cutter *c, struct mcr_batch *b)
     b->camera_y = cut(c, rays, sizeof(double));
     if (core->combines)
         cut_light(c, &b->light, b->lanes);
+    if (core->crosses)
+        cut_crossing(c, b);
+    if (core->interiors) {
+        at->here = cut(c, b->lanes, sizeof(double));
+        at->beyond = cut(c, b->lanes, sizeof(double));
+    }
+    if (core->lobes)
+        cut_lobes(c, &b->lobe, b->lanes);
     b->scratch = cut(c, core->scratch_bytes, 1);
 }
 

@@ -28,7 +28,10 @@
 #define MCR_JOBS 8u /* jobs that a batch may have in flight: more than one, so that the last paths of a job do not keep lanes empty */
 #define MCR_DIMENSION_LENS 2u
 #define MCR_DIMENSION_SAMPLER 8u
+#define MCR_DIMENSION_MATERIAL 28u /* of bounce 0: 8 + 20 */
 #define MCR_DIMENSION_ROULETTE 32u /* of bounce 0: 8 + 24 */
+
+#define MCR_INTERIORS 4u /* interiors that a path remembers being in: see crossing.h */
 
 /* A path's state, apart from where it is. */
 struct mcr_paths {
@@ -37,6 +40,7 @@ struct mcr_paths {
     uint32_t *index, *planned; /* the sample's number in its replicate, and how many are planned */
     uint32_t *bounce;       /* scattering events so far */
     uint32_t *slot;         /* where its radiance goes, in the ring of slots */
+    uint32_t *inside[MCR_INTERIORS]; /* material + 1, in the order of entering, then 0; NULL where no material has an interior */
 };
 
 /* Surface properties by primitive, for gathering. A sphere has radius > 0 and its centre in c; all others are flat (n) but for ellipsoids. */
@@ -60,10 +64,18 @@ struct mcr_group {
     uint32_t material_count;        /* how many materials are in it */
     uint32_t first;                 /* one of them */
     int scatters, emits;
+    int spreads, lobes;             /* what scatters: directions with a density, mirror-like lobes */
     uint32_t channels;              /* 3 * parameters */
     double *constant;               /* channels * MCR_LANE_PAD: each value MCR_LANE_PAD times; of the first material */
     double **table;                 /* channels arrays of scene->material_count values, for groups of several materials */
     uint8_t *varies;                /* channels: whether the group's materials differ in it */
+};
+
+/* What crossing.c has to know of a material. */
+struct mcr_interior {
+    int passes, bounds, absorbs;
+    double index, priority;
+    double attenuation[3];          /* 1 / render length */
 };
 
 /* What all threads share: immutable during a pass. */
@@ -78,11 +90,15 @@ struct mcr_core {
     uint32_t group_count;
     struct mcr_group *group;
     uint32_t *group_of_material;
+    int interiors, crosses;         /* some material has an interior; or that, or lets light pass */
+    struct mcr_interior *interior;  /* by material, where something crosses */
+    uint32_t camera_inside[MCR_INTERIORS];
     uint32_t capacity;              /* rays in a batch */
     uint32_t channels;              /* most of any group */
     uint32_t dimensions;            /* of the sampler's techniques, one bounce */
     uint32_t continuing;            /* the sampler's technique that continues paths */
     int combines;                   /* it has more than one technique */
+    int lobes;                      /* some group has mirror-like lobes */
     int background;                 /* it is not black */
     uint64_t scratch_bytes;         /* for all nested operations of one thread */
     int needs_samples;              /* a number source other than `independent` is there */
@@ -96,6 +112,7 @@ struct mcr_surface_points {
     double *reach;                  /* magnitude for the offset of rays that leave: max(|p|, |o|, reach of the shape) */
     uint32_t *material;
     int64_t *primitive;
+    double *here, *beyond;          /* indices of refraction; NULL where no material has an interior */
 };
 
 /* A stretch of points of one group. */
@@ -110,6 +127,33 @@ struct mcr_job {
     uint64_t first_cell;
     uint32_t cells, paths, begun;
     int busy;
+};
+
+/* For src/core/lobes.c: the lobe chosen at each point, there only when a material has mirror-like lobes. */
+struct mcr_lobes {
+    double *number;
+    double *none;                  /* 1 where no lobe was chosen, 0 where one was: kept until the next hits are weighted */
+    double *x, *y, *z;             /* its direction, away from the surface */
+    double *probability;           /* of what was chosen, lobe or none */
+    double *r, *g, *b;             /* the radiance that it passes on */
+};
+
+/* For src/core/crossing.c: a ray on its way through surfaces, and arrays for those that are on their way together. There only where something crosses. */
+struct mcr_crossing {
+    uint32_t ray;                  /* the caller's */
+    uint32_t bounce, crossings, material;
+    uint32_t inside[MCR_INTERIORS];
+    int by_chance;
+    uint64_t key;
+    int64_t hit;
+    double o[3], d[3], t, far, travelled; /* the running stretch begins at o, `travelled` from where the ray began */
+    double q[3], n[3], side;
+    double factor[3], share[3];
+};
+struct mcr_crossing_lanes {
+    double *px, *py, *pz, *nx, *ny, *nz, *ox, *oy, *oz, *side, *r, *g, *b, *t;
+    int64_t *primitive, *hit;
+    uint32_t *material, *of, *active, *asked, *going;
 };
 
 /* For src/core/light.c: arrays of one lane each, there only when the sampler has more than one technique. Lanes are those of points. */
@@ -154,6 +198,9 @@ struct mcr_batch {
     double *material_density;       /* that the material's own sampling has for the drawn directions; for roulette */
     double *alive;                  /* 1 or 0 */
     struct mcr_light_lanes light;
+    struct mcr_lobes lobe;
+    struct mcr_crossing *crossing;  /* capacity */
+    struct mcr_crossing_lanes crossing_lanes;
     double *lane_input;             /* channels * capacity: inputs that vary from lane to lane */
     const double **channel;         /* the pointers handed to plugins */
     uint32_t *stride;
@@ -173,7 +220,7 @@ struct mcr_batch {
     /* counts, summed at the end */
     uint64_t not_finite, not_finite_cell; /* of the pass */
     uint32_t not_finite_sample;
-    uint64_t camera_rays, bounce_rays, shadow_rays, scatterings;
+    uint64_t camera_rays, bounce_rays, shadow_rays, scatterings, crossings;
     double stage_seconds[MCR_STAGE_COUNT];
     void *memory;
 };
@@ -212,6 +259,8 @@ struct mcr_stages {
     void (*emit)(struct mcr_batch *batch, uint32_t begin, uint32_t end);
     /* Adds the background to the slots of the rays that hit nothing. */
     void (*background)(struct mcr_batch *batch);
+    /* Lobes take the place of what was drawn. */
+    void (*mirror)(struct mcr_batch *batch, const struct mcr_range *range);
     /* Throughput times f cos / density, and roulette; fills alive. */
     void (*scatter)(struct mcr_batch *batch, const struct mcr_range *range);
     /* Makes rays of the living points and lists their lanes in `source`. */

@@ -5,7 +5,7 @@
 #include <math.h>
 #include <string.h>
 
-#define SCATTERS (MCR_MATERIAL_REFLECTS | MCR_MATERIAL_TRANSMITS | MCR_MATERIAL_DELTA)
+#define SPREADS (MCR_MATERIAL_REFLECTS | MCR_MATERIAL_TRANSMITS)
 #define EMITS (MCR_MATERIAL_EMITS_FRONT | MCR_MATERIAL_EMITS_BACK)
 
 static const struct mcr_material_plugin *plugin_of(const struct mcr_scene_material *material)
@@ -27,7 +27,9 @@ static int group_start(struct mcr_arena *arena, struct mcr_group *group, const s
     group->instance = material->node->instance;
     group->node = material->node;
     group->first = m;
-    group->scatters = (material->traits.does & SCATTERS) && group->plugin->evaluate;
+    group->spreads = (material->traits.does & SPREADS) && group->plugin->evaluate;
+    group->lobes = (material->traits.does & MCR_MATERIAL_DELTA) != 0;
+    group->scatters = group->spreads || group->lobes;
     group->emits = (material->traits.does & EMITS) && group->plugin->emission;
     group->channels = 3 * material->node->descriptor->parameter_count;
     group->constant = mcr_arena_alloc(arena, (size_t)group->channels * MCR_LANE_PAD, sizeof(double));
@@ -61,6 +63,7 @@ int mcr_groups_init(struct mcr_core *core, struct mcr_arena *arena)
         if (g == core->group_count && (core->group_count++, group_start(arena, group, scene, m)))
             return -1;
         core->group_of_material[m] = g;
+        core->lobes |= group->lobes;
         group->material_count++;
         for (uint32_t c = 0; c < group->channels; c++) {
             group->table[c][m] = node->values.number[c];
@@ -104,7 +107,9 @@ struct mcr_points mcr_batch_points(const struct mcr_batch *batch, uint32_t begin
                                .ox = at->ox + begin,
                                .oy = at->oy + begin,
                                .oz = at->oz + begin,
-                               .side = at->side + begin};
+                               .side = at->side + begin,
+                               .here = at->here ? at->here + begin : NULL,
+                               .beyond = at->here ? at->beyond + begin : NULL};
 }
 
 static double norm(const double v[3])

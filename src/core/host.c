@@ -256,6 +256,17 @@ int32_t mcr_group_density(struct mcr_batch *batch, const struct mcr_range *range
     return leave(batch, &was, status);
 }
 
+int32_t mcr_group_delta(struct mcr_batch *batch, const struct mcr_range *range, const double *const *number, const struct mcr_directions *out,
+                        double *probability, const struct mcr_colours *weight)
+{
+    const struct mcr_group *group = &batch->core->group[range->group];
+    struct mcr_points at = mcr_batch_points(batch, range->begin, range->end);
+    struct mcr_inputs inputs = mcr_group_inputs(batch, group, batch->at.material, range->begin, range->end);
+    struct frame was = enter(batch, group->node, mcr_material_bytes(group, at.n));
+    int32_t status = group->plugin->delta(&batch->core->host, &batch->context, group->instance, &inputs, &at, number, out, probability, weight);
+    return leave(batch, &was, status);
+}
+
 static int32_t emission(struct mcr_batch *batch, const struct mcr_group *group, const struct mcr_points *at, const struct mcr_inputs *inputs,
                         const struct mcr_colours *out)
 {
@@ -277,6 +288,15 @@ int32_t mcr_points_emission(struct mcr_batch *batch, const struct mcr_group *gro
 {
     struct mcr_inputs inputs = mcr_group_inputs(batch, group, material, 0, at->n);
     return emission(batch, group, at, &inputs, out);
+}
+
+int32_t mcr_points_passes(struct mcr_batch *batch, const struct mcr_group *group, const struct mcr_points *at, const uint32_t *material,
+                          const struct mcr_colours *out)
+{
+    struct mcr_inputs inputs = mcr_group_inputs(batch, group, material, 0, at->n);
+    struct frame was = enter(batch, group->node, mcr_material_bytes(group, at->n));
+    int32_t status = group->plugin->passes(&batch->core->host, &batch->context, group->instance, &inputs, at, out);
+    return leave(batch, &was, status);
 }
 
 static int32_t source_fill(struct mcr_batch *batch, const struct mcr_node *node, const struct mcr_samples *samples, uint32_t first, uint32_t count,

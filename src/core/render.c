@@ -7,6 +7,7 @@
 #include "base/cpu.h"
 #include "base/random.h"
 #include "base/threads.h"
+#include "core/crossing.h"
 #include "core/groups.h"
 #include "core/host.h"
 #include "core/pass.h"
@@ -83,8 +84,10 @@ static int prepare(struct render *render, const struct mcr_scene *scene, const s
     }
     core->combines = directions->technique_count > 1;
     core->emitters = mcr_emitters_create(render->arena, scene);
-    if (!core->emitters || mcr_groups_init(core, render->arena) || mcr_surfaces_init(core, render->arena))
+    if (!core->emitters || mcr_groups_init(core, render->arena) || mcr_surfaces_init(core, render->arena) ||
+        mcr_crossing_init(core, render->arena))
         return -1;
+    mcr_crossing_camera(core);
     mcr_host_init(core);
     core->scratch_bytes = mcr_host_scratch(core);
     return 0;
@@ -119,6 +122,7 @@ static void collect(struct render *render, struct mcr_render_stats *stats)
         stats->camera_rays += batch->camera_rays;
         stats->bounce_rays += batch->bounce_rays;
         stats->shadow_rays += batch->shadow_rays;
+        stats->bounce_rays += batch->crossings;
         stats->scatterings += batch->scatterings;
         stats->not_finite += batch->not_finite;
         for (int s = 0; s < MCR_STAGE_COUNT; s++)
@@ -129,7 +133,7 @@ static void collect(struct render *render, struct mcr_render_stats *stats)
             stats->not_finite_y = film->y0 + (uint32_t)(cell % pass->pixels / (film->x1 - film->x0));
             stats->not_finite_sample = pass->first + cell / pass->pixels * pass->cell_samples + batch->not_finite_sample;
         }
-        batch->camera_rays = batch->bounce_rays = batch->shadow_rays = batch->scatterings = batch->not_finite = 0;
+        batch->camera_rays = batch->bounce_rays = batch->shadow_rays = batch->crossings = batch->scatterings = batch->not_finite = 0;
         memset(batch->stage_seconds, 0, sizeof batch->stage_seconds);
     }
 }
