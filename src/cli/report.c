@@ -61,7 +61,7 @@ void mcr_report_text(FILE *to, const struct mcr_report_data *data)
     double seconds = stats->wall_seconds;
     fprintf(to, "scene     %s: %ux%u, %u spp, depth %u, seed %llu\n", data->options->scene, scene->film.x1 - scene->film.x0,
             scene->film.y1 - scene->film.y0, render->spp, render->depth, (unsigned long long)render->seed);
-    fprintf(to, "sampler   %s; numbers %s%s; roulette %s\n", scene->sampler->expression, data->film->correlated ? "correlated" : "independent",
+    fprintf(to, "sampler   %s%s; numbers %s%s; roulette %s\n", scene->sampler->expression, scene->sampler_chosen ? " (chosen for this scene, which names none)" : "", data->film->correlated ? "correlated" : "independent",
             data->film->correlated && render->replicates < 2 ? ", one replicate" : "", render->roulette ? "on" : "off");
     if (data->film->correlated && render->replicates > 1)
         fprintf(to, "          %u replicates of %u samples\n", render->replicates, render->spp / render->replicates);
@@ -137,6 +137,7 @@ static void json_scene(struct mcr_json_writer *json, const struct mcr_report_dat
     mcr_json_end(json);
     mcr_json_begin_object(json, "settings");
     mcr_json_text(json, "sampler", scene->sampler->expression);
+    mcr_json_boolean(json, "sampler_chosen", scene->sampler_chosen);
     mcr_json_unsigned(json, "spp", render->spp);
     mcr_json_unsigned(json, "depth", render->depth);
     mcr_json_unsigned(json, "seed", render->seed);

@@ -141,6 +141,7 @@ struct mcr_scene {
     uint32_t dropped;            /* degenerate triangles of meshes, left out */
     int has_lights;              /* bounded shapes emit */
     struct mcr_place sampler_place;
+    int sampler_chosen;          /* by the program, since neither the scene nor the command line names one */
     const struct mcr_scene_study *study; /* NULL where nothing asks for one */
 };
 
