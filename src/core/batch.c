@@ -116,6 +116,8 @@ static void cut_all(struct cutter *c, struct mcr_batch *b)
     b->slot_r = cut(c, (size_t)MCR_JOBS * MCR_JOB_SLOTS, sizeof(double));
     b->slot_g = cut(c, (size_t)MCR_JOBS * MCR_JOB_SLOTS, sizeof(double));
     b->slot_b = cut(c, (size_t)MCR_JOBS * MCR_JOB_SLOTS, sizeof(double));
+    if (core->scene->film.filter_edge)
+        b->slot_weight = cut(c, (size_t)MCR_JOBS * MCR_JOB_SLOTS, sizeof(double));
     if (core->scene->render.compat & MCR_COMPAT_CLAMP) {
         b->cap_r = cut(c, (size_t)MCR_JOBS * MCR_JOB_SLOTS, sizeof(double));
         b->cap_g = cut(c, (size_t)MCR_JOBS * MCR_JOB_SLOTS, sizeof(double));

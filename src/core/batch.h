@@ -205,6 +205,7 @@ struct mcr_batch {
     const double **channel;         /* the pointers handed to plugins */
     uint32_t *stride;
     double *slot_r, *slot_g, *slot_b;
+    double *slot_weight;            /* what a sample counts in its pixel; NULL where the film's filter gives all the same */
     double *cap_r, *cap_g, *cap_b;  /* by slot; NULL without compat clamp: see compat.h */
     struct mcr_job *job;
     char *scratch;                  /* scratch_bytes */
@@ -232,6 +233,7 @@ struct mcr_camera_lanes {
     const double *const *film;      /* 2 arrays */
     const double *const *lens;      /* 2 arrays, or NULL */
     double *ox, *oy, *oz, *dx, *dy, *dz;
+    double *weight;                 /* of the samples; NULL: the filter gives all the same */
 };
 
 /* New camera paths: the samples of a job in order, cell after cell (pass.h). */

@@ -100,6 +100,17 @@ static void finish_cell(const struct mcr_batch *batch, const struct mcr_pass *pa
         mcr_cell_channel_moments(r, g, b, pass->cell_samples, &pass->cell[number], &pass->channels[number]);
 }
 
+/* The samples' weights by the film's filter, which may be negative: applied at the end, where they disturb no throughput. */
+static void weigh(struct mcr_batch *batch, size_t first, uint32_t n)
+{
+    const double *restrict weight = batch->slot_weight;
+    for (size_t i = first; i < first + n; i++) {
+        batch->slot_r[i] *= weight[i];
+        batch->slot_g[i] *= weight[i];
+        batch->slot_b[i] *= weight[i];
+    }
+}
+
 /* Sums up the jobs whose paths have all begun and ended. */
 static void finish_jobs(struct mcr_batch *batch, struct mcr_pass *pass)
 {
@@ -109,6 +120,8 @@ static void finish_jobs(struct mcr_batch *batch, struct mcr_pass *pass)
             continue;
         if (batch->cap_r)
             mcr_compat_clamp(batch, (size_t)i * MCR_JOB_SLOTS, job->paths);
+        if (batch->slot_weight)
+            weigh(batch, (size_t)i * MCR_JOB_SLOTS, job->paths);
         for (uint32_t c = 0; c < job->cells; c++) {
             size_t slot = (size_t)i * MCR_JOB_SLOTS + (size_t)c * pass->cell_samples;
             uint64_t number = job->first_cell + c;
@@ -144,6 +157,7 @@ static int32_t camera(struct mcr_batch *batch, struct mcr_pass *pass)
                                   .first = (uint32_t)pass->first,
                                   .planned = pass->planned,
                                   .replicate_key = pass->replicate_key};
+        double *weight = batch->slot_weight ? batch->slot_weight + begin.slot : NULL;
         core->stages->begin(batch, &begin);
         job->begun += n;
         int32_t status = mcr_numbers(batch, paths, to, to + n, 0, 2, batch->number);
@@ -161,7 +175,8 @@ static int32_t camera(struct mcr_batch *batch, struct mcr_pass *pass)
                                          .oz = batch->roz + batch->rays,
                                          .dx = batch->rdx + batch->rays,
                                          .dy = batch->rdy + batch->rays,
-                                         .dz = batch->rdz + batch->rays};
+                                         .dz = batch->rdz + batch->rays,
+                                         .weight = weight};
         core->stages->camera(core->scene, &lanes);
         if (core->interiors)
             mcr_crossing_begin(batch, to, n);

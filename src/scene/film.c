@@ -1,11 +1,24 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Blocks `film { … }`: size, crop, filter, and what the command line says over them. */
 #include "scene/build.h"
+#include "scene/mitchell.h"
 #include "scene/vector.h"
+
+/* Arguments of mitchell, and where its samples are drawn. */
+static void read_mitchell(struct mcr_build *build, const struct mcr_settings *arguments)
+{
+    struct mcr_film_settings *film = &build->scene->film;
+    double *edge = mcr_build_alloc(build, MCR_MITCHELL_CELLS + 1, sizeof *edge);
+    int bad = mcr_read_number(build, arguments, FILTER_B, &film->filter_b) < 0;
+    if (mcr_read_number(build, arguments, FILTER_C, &film->filter_c) < 0 || bad || !edge)
+        return;
+    mcr_mitchell_edges(film->filter_b, film->filter_c, edge);
+    film->filter_edge = edge;
+}
 
 static void read_filter(struct mcr_build *build, const struct mcr_settings *settings)
 {
-    static const char *const words[MCR_FILTER_COUNT] = { "box", "tent", "gaussian" };
+    static const char *const words[MCR_FILTER_COUNT] = { "box", "tent", "gaussian", "mitchell" };
     struct mcr_film_settings *film = &build->scene->film;
     const struct mcr_value *value = settings->value[FILM_FILTER];
     struct mcr_settings arguments;
@@ -29,6 +42,8 @@ static void read_filter(struct mcr_build *build, const struct mcr_settings *sett
     mcr_read_number(build, &arguments, FILTER_RADIUS, &film->filter_radius);
     if (filter == MCR_FILTER_GAUSSIAN)
         mcr_read_number(build, &arguments, FILTER_SIGMA, &film->filter_sigma);
+    if (filter == MCR_FILTER_MITCHELL)
+        read_mitchell(build, &arguments);
 }
 
 /* The place of what was wrong: the scene's setting, or none where the command line said it. */

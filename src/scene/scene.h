@@ -74,14 +74,16 @@ struct mcr_camera {
     double world[3];                    /* its position in the world */
 };
 
-enum mcr_filter_kind { MCR_FILTER_BOX, MCR_FILTER_TENT, MCR_FILTER_GAUSSIAN };
+enum mcr_filter_kind { MCR_FILTER_BOX, MCR_FILTER_TENT, MCR_FILTER_GAUSSIAN, MCR_FILTER_MITCHELL };
 
 struct mcr_film_settings {
     uint32_t width, height;                  /* the full picture */
     uint32_t x0, y0, x1, y1;                 /* the crop that is rendered: x0 <= x < x1, from the top left */
     uint32_t filter;
-    double filter_radius;                    /* pixels; box 0.5, tent 1, gaussian (circular cut) 1.5 */
+    double filter_radius;                    /* pixels; box 0.5, tent 1, gaussian (circular cut) 1.5, mitchell 2 */
     double filter_sigma;                     /* gaussian, pixels */
+    double filter_b, filter_c;               /* mitchell */
+    const double *filter_edge;               /* MCR_MITCHELL_CELLS + 1 for mitchell, whose samples have weights; NULL: all weigh 1 */
 };
 
 enum mcr_precision { MCR_PRECISION_DOUBLE };

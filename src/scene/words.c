@@ -59,6 +59,11 @@ static const struct mcr_parameter gaussian_filter[] = {
     [FILTER_RADIUS] = ROW("radius", MCR_TYPE_NUMBER, ABOVE, "pixels", 0, 64, 1.5, 0, 0, "Where the filter is cut."),
     [FILTER_SIGMA] = ROW("sigma", MCR_TYPE_NUMBER, ABOVE, "pixels", 0, 64, 0.5, 0, 0, "Standard deviation."),
 };
+static const struct mcr_parameter mitchell_filter[] = {
+    [FILTER_RADIUS] = ROW("radius", MCR_TYPE_NUMBER, ABOVE, "pixels", 0, 64, 2, 0, 0, "Where the filter ends."),
+    [FILTER_B] = ROW("b", MCR_TYPE_NUMBER, 0, "", 0, 1, 1.0 / 3, 0, 0, "Blur: 1 with c = 0 is the cubic B-spline."),
+    [FILTER_C] = ROW("c", MCR_TYPE_NUMBER, 0, "", 0, 1, 1.0 / 3, 0, 0, "Ringing: 0.5 with b = 0 is the Catmull-Rom spline."),
+};
 static const struct mcr_parameter roulette[] = {
     ROW("from", MCR_TYPE_INTEGER, 0, "", 0, 2147483646, 8, 0, 0, "The first scattering event, counted from 0, at which it may end a path."),
 };
@@ -205,6 +210,7 @@ const struct mcr_block_word mcr_filter_words[MCR_FILTER_COUNT] = {
     BLOCK("box", NULL, MCR_BLOCK_FILM, box_filter, "Constant."),
     BLOCK("tent", NULL, MCR_BLOCK_FILM, tent_filter, "Falls off linearly in x and y."),
     BLOCK("gaussian", NULL, MCR_BLOCK_FILM, gaussian_filter, "A Gaussian, cut off in a circle."),
+    BLOCK("mitchell", NULL, MCR_BLOCK_FILM, mitchell_filter, "Mitchell and Netravali's cubic, sharper, negative in part."),
 };
 const struct mcr_block_word mcr_roulette_word = BLOCK("on", NULL, MCR_BLOCK_RENDER, roulette, "Russian roulette.");
 
@@ -237,7 +243,7 @@ const char *mcr_word_form(uint32_t type)
         [MCR_WORD_FACE_LIST] = "a tuple of faces (i, j, k) or (i, j, k, l)",
         [MCR_WORD_MATERIAL] = "the name of a material",
         [MCR_WORD_SAMPLER] = "a sampler such as cosine or mixture(cosine 1, light 1)",
-        [MCR_WORD_FILTER] = "box, tent or gaussian",
+        [MCR_WORD_FILTER] = "box, tent, gaussian or mitchell",
         [MCR_WORD_ROULETTE] = "on, off or on(from=N)",
         [MCR_WORD_COMPAT] = "none, clamp, background-at-limit, disk-polar, sphere-spherical or floor-sqrt, or a tuple of these",
         [MCR_WORD_TEXT] = "a text in quotes",
