@@ -11,6 +11,7 @@
 
 #include "base/arena.h"
 #include "base/diag.h"
+#include "image/tone.h"
 #include "language/tree.h"
 #include "plugin/node.h"
 #include "plugin/registry.h"
@@ -84,6 +85,8 @@ struct mcr_film_settings {
     double filter_sigma;                     /* gaussian, pixels */
     double filter_b, filter_c;               /* mitchell */
     const double *filter_edge;               /* MCR_MITCHELL_CELLS + 1 for mitchell, whose samples have weights; NULL: all weigh 1 */
+    double exposure;                         /* stops, for formats of 8 and 16 bits, as is the tone curve */
+    struct mcr_tone tone;
 };
 
 enum mcr_precision { MCR_PRECISION_DOUBLE };
@@ -155,6 +158,9 @@ struct mcr_overrides {
     uint32_t spp, depth, threads, width, height, crop[4], accel, batch;
     uint64_t seed;
     const char *sampler; /* an expression */
+    const char *tone;    /* an expression */
+    int has_exposure;
+    double exposure;
     const struct mcr_study_texts *study; /* NULL: a block `study` is judged if there is one */
     int has_roulette_from;
     uint32_t roulette_from;
