@@ -218,6 +218,7 @@ static void set_probabilities(struct mcr_emitters *all, const struct mcr_scene *
     }
     for (uint32_t e = 0; e < all->count; e++)
         sum += all->emitter[e].probability / largest;
+    all->power = MCR_PI * largest * sum;
     double running = 0;
     for (uint32_t e = 0; e < all->count; e++) {
         all->from[e] = running;
@@ -228,6 +229,11 @@ static void set_probabilities(struct mcr_emitters *all, const struct mcr_scene *
         all->from[e] = 2; /* beyond every number */
     for (uint32_t e = 0; e < all->count; e++) /* what was added is what is told */
         all->emitter[e].probability = (e + 1 < all->count ? all->from[e + 1] : 1) - all->from[e];
+}
+
+double mcr_emitters_power(const struct mcr_emitters *emitters)
+{
+    return emitters->power;
 }
 
 size_t mcr_emitters_scratch(const struct mcr_emitters *emitters, uint32_t n)

@@ -74,12 +74,19 @@ struct mcr_emitters {
     uint32_t levels;              /* of the search in `from`: 2^levels >= count */
     int32_t *of_primitive;        /* the emitter's number or -1 */
     uint32_t kinds;               /* bit set of those there are */
+    double power;                 /* see mcr_emitters_power */
     struct mcr_emitter_node *node; /* NULL with few emitters; else emitters are in the order of its leaves */
     double cosine[128];           /* cos(2 pi i / 128) */
 };
 
 /* NULL when memory is short. Lives in `arena`; immutable. */
 struct mcr_emitters *mcr_emitters_create(struct mcr_arena *arena, const struct mcr_scene *scene);
+
+/*
+ * What all emitters radiate together: luminance of their mean radiance times area times emitting sides times pi; W in render space, that is
+ * W in the world times the square of the scene's scale. 0 without emitters. An estimate, as the mean radiances are.
+ */
+double mcr_emitters_power(const struct mcr_emitters *emitters);
 
 /* Bytes of scratch, 64-byte aligned, that one call over n points needs. */
 size_t mcr_emitters_scratch(const struct mcr_emitters *emitters, uint32_t n);
