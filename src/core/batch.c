@@ -22,7 +22,7 @@ static void *cut(struct cutter *c, size_t count, size_t size)
     return at;
 }
 
-static void cut_paths(struct cutter *c, struct mcr_paths *paths, uint32_t lanes, int interiors)
+static void cut_paths(struct cutter *c, struct mcr_paths *paths, uint32_t lanes, const struct mcr_core *core)
 {
     paths->r = cut(c, lanes, sizeof(double));
     paths->g = cut(c, lanes, sizeof(double));
@@ -33,8 +33,12 @@ static void cut_paths(struct cutter *c, struct mcr_paths *paths, uint32_t lanes,
     paths->planned = cut(c, lanes, sizeof(uint32_t));
     paths->bounce = cut(c, lanes, sizeof(uint32_t));
     paths->slot = cut(c, lanes, sizeof(uint32_t));
-    for (uint32_t i = 0; i < MCR_INTERIORS && interiors; i++)
+    for (uint32_t i = 0; i < MCR_INTERIORS && core->interiors; i++)
         paths->inside[i] = cut(c, lanes, sizeof(uint32_t));
+    if (core->needs_pixel) {
+        paths->x = cut(c, lanes, sizeof(uint32_t));
+        paths->y = cut(c, lanes, sizeof(uint32_t));
+    }
 }
 
 /* Arrays for combining techniques. */
@@ -90,8 +94,8 @@ static void cut_all(struct cutter *c, struct mcr_batch *b)
         *of_rays[i] = cut(c, rays, sizeof(double));
     b->hit = cut(c, rays, sizeof *b->hit);
     b->source = cut(c, rays, sizeof *b->source);
-    cut_paths(c, &b->state, b->lanes, core->interiors);
-    cut_paths(c, &b->sorted, b->lanes, core->interiors);
+    cut_paths(c, &b->state, b->lanes, core);
+    cut_paths(c, &b->sorted, b->lanes, core);
     for (size_t i = 0; i < sizeof of_points / sizeof *of_points; i++)
         *of_points[i] = cut(c, b->lanes, sizeof(double));
     if (!core->surfaces.smooth) {

@@ -38,6 +38,7 @@ struct mcr_paths {
     double *r, *g, *b;      /* throughput */
     uint64_t *pixel_key, *path_key;
     uint32_t *index, *planned; /* the sample's number in its replicate, and how many are planned */
+    uint32_t *x, *y;        /* the pixel; NULL unless core->needs_pixel */
     uint32_t *bounce;       /* scattering events so far */
     uint32_t *slot;         /* where its radiance goes, in the ring of slots */
     uint32_t *inside[MCR_INTERIORS]; /* material + 1, in the order of entering, then 0; NULL where no material has an interior */
@@ -102,6 +103,7 @@ struct mcr_core {
     int background;                 /* it is not black */
     uint64_t scratch_bytes;         /* for all nested operations of one thread */
     int needs_samples;              /* a number source other than `independent` is there */
+    int needs_pixel;                /* one of them asks for the pixel */
     struct mcr_host host;
     const struct mcr_render_options *options;
 };
@@ -218,6 +220,7 @@ struct mcr_batch {
     const struct mcr_range *running; /* the range whose points a sampler works on, for the host's material services */
     /* for new camera paths */
     double *camera_x, *camera_y;
+    uint64_t replicate_key;         /* of the running pass */
     /* counts, summed at the end */
     uint64_t not_finite, not_finite_cell; /* of the pass */
     uint32_t not_finite_sample;

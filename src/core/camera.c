@@ -183,6 +183,16 @@ static void identities(const struct mcr_film_settings *film, const struct mcr_be
     }
 }
 
+/* The pixels as whole numbers, for number sources that ask for them. */
+static void pixels(uint32_t n, const double *restrict x, const double *restrict y, uint32_t *restrict column, uint32_t *restrict row)
+{
+    MCR_LANES
+    for (uint32_t i = 0; i < n; i++) {
+        column[i] = (uint32_t)(int32_t)x[i];
+        row[i] = (uint32_t)(int32_t)y[i];
+    }
+}
+
 void MCR_ISA_NAME(mcr_stage_begin)(struct mcr_batch *batch, const struct mcr_begin *b)
 {
     const struct mcr_paths *paths = &batch->state;
@@ -206,4 +216,6 @@ void MCR_ISA_NAME(mcr_stage_begin)(struct mcr_batch *batch, const struct mcr_beg
     MCR_LANES
     for (uint32_t i = 0; i < n; i++)
         red[i] = green[i] = blue[i] = 1;
+    if (paths->x)
+        pixels(n, batch->camera_x, batch->camera_y, paths->x + to, paths->y + to);
 }

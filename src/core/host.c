@@ -318,7 +318,10 @@ int32_t mcr_numbers(struct mcr_batch *batch, const struct mcr_paths *paths, uint
                                   .path_key = paths->path_key + begin,
                                   .index = paths->index + begin,
                                   .planned = paths->planned + begin,
-                                  .bounce = paths->bounce + begin};
+                                  .bounce = paths->bounce + begin,
+                                  .x = paths->x ? paths->x + begin : NULL,
+                                  .y = paths->y ? paths->y + begin : NULL,
+                                  .replicate_key = batch->replicate_key};
     uint32_t done = 0;
     for (uint32_t s = 0; s < sampler->source_count && done < count; s++) {
         const struct mcr_node *node = sampler->source[s];

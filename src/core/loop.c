@@ -323,6 +323,7 @@ static int32_t step(struct mcr_batch *batch, struct mcr_pass *pass)
 
 void mcr_batch_run(struct mcr_batch *batch, struct mcr_pass *pass, uint32_t thread)
 {
+    batch->replicate_key = pass->replicate_key;
     while (!atomic_load_explicit(&pass->failed, memory_order_relaxed)) {
         int32_t status;
         TIMED(MCR_STAGE_CAMERA, status = camera(batch, pass));

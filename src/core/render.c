@@ -76,6 +76,7 @@ static int prepare(struct render *render, const struct mcr_scene *scene, const s
     core->lights = lights_of(options->isa);
     core->capacity = scene->render.batch ? (scene->render.batch + MCR_LANE_PAD - 1) / MCR_LANE_PAD * MCR_LANE_PAD : DEFAULT_BATCH;
     core->needs_samples = scene->sampler->source_count > 0;
+    core->needs_pixel = (scene->sampler->needs & MCR_NEEDS_PIXEL) != 0;
     core->background = background[0] > 0 || background[1] > 0 || background[2] > 0;
     for (uint32_t t = 0; t < directions->technique_count; t++) {
         core->dimensions += directions->technique[t].dimensions;

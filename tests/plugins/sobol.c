@@ -28,7 +28,8 @@ static void set(uint32_t lane, uint64_t pixel, uint32_t number, uint32_t of, uin
 /* Dimensions first + k into u[k]. */
 static void fill(uint32_t lanes, uint32_t first, uint32_t count)
 {
-    struct mcr_samples samples = {sizeof samples, lanes, pixel_key, path_key, sample, planned, bounce};
+    struct mcr_samples samples = {.size = sizeof samples, .n = lanes, .pixel_key = pixel_key, .path_key = path_key,
+                                  .index = sample, .planned = planned, .bounce = bounce};
 
     if (plugin->fill(&stand_in, &context, instance, &samples, first, count, u) != MCR_OK) {
         printf("Bail out! fill failed\n");
