@@ -81,6 +81,11 @@ static void cut_crossing(struct cutter *c, struct mcr_batch *b)
     b->crossing = cut(c, b->lanes, sizeof *b->crossing);
 }
 
+static void *cut_feature(void *cutter, size_t count, size_t size)
+{
+    return cut(cutter, count, size);
+}
+
 static void cut_all(struct cutter *c, struct mcr_batch *b)
 {
     const struct mcr_core *core = b->core;
@@ -120,6 +125,8 @@ static void cut_all(struct cutter *c, struct mcr_batch *b)
     b->slot_r = cut(c, (size_t)MCR_JOBS * MCR_JOB_SLOTS, sizeof(double));
     b->slot_g = cut(c, (size_t)MCR_JOBS * MCR_JOB_SLOTS, sizeof(double));
     b->slot_b = cut(c, (size_t)MCR_JOBS * MCR_JOB_SLOTS, sizeof(double));
+    if (core->features)
+        mcr_features_cut(b, cut_feature, c);
     if (core->scene->film.filter_edge)
         b->slot_weight = cut(c, (size_t)MCR_JOBS * MCR_JOB_SLOTS, sizeof(double));
     if (core->scene->render.compat & MCR_COMPAT_CLAMP) {

@@ -14,6 +14,7 @@
 #include "base/lanes.h"
 #include "core/core.h"
 #include "core/emitters.h"
+#include "core/features.h"
 
 /*
  * A ray starts off its surface, on the side it leaves to, by MCR_OFFSET max(|p|, |o|, |c|, R): p the point, o the origin of the ray that found it,
@@ -101,6 +102,7 @@ struct mcr_core {
     int combines;                   /* it has more than one technique */
     int lobes;                      /* some group has mirror-like lobes */
     int background;                 /* it is not black */
+    uint32_t features;              /* MCR_FEATURE_*, 0: none */
     uint64_t scratch_bytes;         /* for all nested operations of one thread */
     int needs_samples;              /* a number source other than `independent` is there */
     int needs_pixel;                /* one of them asks for the pixel */
@@ -207,6 +209,7 @@ struct mcr_batch {
     const double **channel;         /* the pointers handed to plugins */
     uint32_t *stride;
     double *slot_r, *slot_g, *slot_b;
+    struct mcr_feature_slots features; /* there only where features are asked for */
     double *slot_weight;            /* what a sample counts in its pixel; NULL where the film's filter gives all the same */
     double *cap_r, *cap_g, *cap_b;  /* by slot; NULL without compat clamp: see compat.h */
     struct mcr_job *job;
@@ -236,6 +239,7 @@ struct mcr_camera_lanes {
     const double *const *film;      /* 2 arrays */
     const double *const *lens;      /* 2 arrays, or NULL */
     double *ox, *oy, *oz, *dx, *dy, *dz;
+    double *distance;               /* from the pixel's centre, squared, in pixels; NULL: nobody asks */
     double *weight;                 /* of the samples; NULL: the filter gives all the same */
 };
 

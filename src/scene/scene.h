@@ -164,6 +164,7 @@ struct mcr_overrides {
     const struct mcr_study_texts *study; /* NULL: a block `study` is judged if there is one */
     int has_roulette_from;
     uint32_t roulette_from;
+    uint32_t layer_bytes; /* a pixel, that layers of features take: count for the film's memory */
     int channel_variance; /* the film is to keep the channels' variances: counts for its memory */
 };
 
