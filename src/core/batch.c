@@ -86,6 +86,16 @@ static void *cut_feature(void *cutter, size_t count, size_t size)
     return cut(cutter, count, size);
 }
 
+/* Arrays for point lights. */
+static void cut_point(struct cutter *c, struct mcr_point_lanes *p, uint32_t lanes)
+{
+    double **array[] = {&p->number, &p->wx, &p->wy, &p->wz, &p->er, &p->eg, &p->eb, &p->far, &p->fr,    &p->fg,
+                        &p->fb,     &p->ox, &p->oy, &p->oz, &p->dx, &p->dy, &p->dz, &p->length, &p->seen};
+    for (size_t i = 0; i < sizeof array / sizeof *array; i++)
+        *array[i] = cut(c, lanes, sizeof(double));
+    p->lane = cut(c, lanes, sizeof *p->lane);
+}
+
 static void cut_all(struct cutter *c, struct mcr_batch *b)
 {
     const struct mcr_core *core = b->core;
@@ -147,6 +157,8 @@ static void cut_all(struct cutter *c, struct mcr_batch *b)
     }
     if (core->lobes)
         cut_lobes(c, &b->lobe, b->lanes);
+    if (core->point_lights)
+        cut_point(c, &b->point, b->lanes);
     b->scratch = cut(c, core->scratch_bytes, 1);
 }
 

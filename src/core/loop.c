@@ -282,6 +282,8 @@ static int32_t scatter_range(struct mcr_batch *batch, const struct mcr_range *ra
         status = draw_range(batch, range);
     if (!status && range->roulette < range->end)
         status = roulette(batch, range);
+    if (!status && core->point_lights)
+        TIMED(MCR_STAGE_LIGHT, status = mcr_point_lights_add(batch, range));
     batch->running = NULL;
     if (status)
         return status;

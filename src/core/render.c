@@ -10,6 +10,7 @@
 #include "core/crossing.h"
 #include "core/groups.h"
 #include "core/host.h"
+#include "core/lights.h"
 #include "core/pass.h"
 
 /* Rays in a batch by default: their arrays stay in the second-level cache (measured: `make bench`). */
@@ -90,6 +91,9 @@ static int prepare(struct render *render, const struct mcr_scene *scene, const s
         mcr_crossing_init(core, render->arena))
         return -1;
     mcr_crossing_camera(core);
+    if (mcr_lights_init(core, render->arena) || mcr_point_lights_create(render->arena, scene, &core->point_lights))
+        return -1;
+    core->background |= core->sky != NULL;
     mcr_host_init(core);
     core->scratch_bytes = mcr_host_scratch(core);
     return 0;

@@ -15,6 +15,7 @@
 #include "language/tree.h"
 #include "plugin/node.h"
 #include "plugin/registry.h"
+#include "scene/lights.h"
 #include "scene/study.h"
 
 enum mcr_shape_kind {
@@ -144,7 +145,10 @@ struct mcr_scene {
     struct mcr_triangles triangles;
     uint32_t primitive_count;    /* of shapes and triangles together, at most 2^31 - 1 */
     uint32_t dropped;            /* degenerate triangles of meshes, left out */
-    int has_lights;              /* bounded shapes emit */
+    uint32_t light_count;        /* point, spot and sun, in the order of the text */
+    struct mcr_scene_light *light;
+    const struct mcr_environment *environment; /* NULL: there is none */
+    int has_lights;              /* bounded shapes emit, or there is a sun with an extent or an environment that is not black */
     struct mcr_place sampler_place;
     int sampler_chosen;          /* by the program, since neither the scene nor the command line names one */
     const struct mcr_scene_study *study; /* NULL where nothing asks for one */
