@@ -8,7 +8,8 @@
 #include "image/image.h"
 
 /* In the order of the channels in a file. */
-enum { MCR_LAYER_VARIANCE = 1, MCR_LAYER_ALBEDO = 2, MCR_LAYER_NORMAL = 4, MCR_LAYER_DEPTH = 8, MCR_LAYER_ID = 16, MCR_LAYER_DIRECT = 32, MCR_LAYER_INDIRECT = 64 };
+enum { MCR_LAYER_VARIANCE = 1, MCR_LAYER_ALBEDO = 2, MCR_LAYER_NORMAL = 4, MCR_LAYER_DEPTH = 8,
+       MCR_LAYER_ID = 16, MCR_LAYER_DIRECT = 32, MCR_LAYER_INDIRECT = 64 };
 
 /* "albedo,normal". Returns 0, or an exit status after a message. */
 int mcr_layers_parse(const char *text, uint32_t *layers);

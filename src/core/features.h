@@ -4,8 +4,8 @@
  * asks for it (mcr_render_options.features).
  *
  * First hit: the surface that the camera ray stays at, behind all that let it pass. Values are per sample, in the slots' order, and are added up by
- * cells with the samples. Samples count the same for all layers but direct and indirect light, also where the film's filter gives weights: with negative ones an albedo
- * could leave [0, 1].
+ * cells with the samples. Samples count the same for all layers but direct and indirect light, also where the film's filter gives weights: with
+ * negative ones an albedo could leave [0, 1].
  */
 #ifndef MCR_CORE_FEATURES_H
 #define MCR_CORE_FEATURES_H

@@ -31,8 +31,8 @@ void mcr_features_destroy(struct mcr_features *features); /* NULL is allowed */
 int mcr_features_add(void *features, const struct mcr_cell_features *cell, uint32_t count);
 
 /*
- * One layer of pixel p: 3 numbers for albedo, normal, direct and indirect, else 1. Albedo, direct and indirect are means over the samples; the normal is, too: shorter than 1
- * where a pixel sees several. Depth is the mean over the samples that hit something, 0 where none did. The id is that of the sample nearest to the
+ * One layer of pixel p: 3 numbers for albedo, normal, direct and indirect, else 1. Albedo, direct and indirect are means over the samples; the normal
+ * is, too: shorter than 1 where a pixel sees several. Depth is the mean over the samples that hit something, 0 where none did. The id is that of the sample nearest to the
  * pixel's centre, of the earliest where several are: a mean of numbers of materials would be a number of another one.
  */
 void mcr_features_value(const struct mcr_features *features, uint32_t layer, uint64_t p, double *out);

@@ -8,7 +8,8 @@
  *     power   = primary [ "^" sign ]            so that -2^2 is -4, 2^-1 is 0.5 and 2^3^2 is 2^9
  *
  * A tuple of three numbers (a colour, a vector) may be multiplied with a number and divided by one. What else is no arithmetic (a tuple, a string, a
- * name, a call) passes through as it is; an operator beside it is an error. Results are finite or errors. Nothing of libm is called but sqrt and fabs: the numbers of a scene are the same on every machine.
+ * name, a call) passes through as it is; an operator beside it is an error. Results are finite or errors. Nothing of libm is called but sqrt and fabs:
+ * the numbers of a scene are the same on every machine.
  */
 #include "language/internal.h"
 

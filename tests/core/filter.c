@@ -135,17 +135,17 @@ int main(void)
 {
     static const double edge[] = {5.3, 6.5, 4.999};
     for (int i = 0; i < 3; i++) {
-        test_edge("mitchell", 2, 1 / 3.0, 1 / 3.0, edge[i], "spp 20000 seed 3");
-        test_edge("mitchell(b=0, c=0.5)", 2, 0, 0.5, edge[i], "spp 4000 seed 4");
+        test_edge("mitchell", 2, 1 / 3.0, 1 / 3.0, edge[i], "sampler cosine spp 20000 seed 3");
+        test_edge("mitchell(b=0, c=0.5)", 2, 0, 0.5, edge[i], "sampler cosine spp 4000 seed 4");
     }
-    test_edge("mitchell(radius=3.2, b=0.2, c=0.9)", 3.2, 0.2, 0.9, 5.3, "spp 4000");
-    test_edge("mitchell(radius=0.5, b=0, c=1)", 0.5, 0, 1, 5.3, "spp 4000");
-    test_edge("mitchell(b=1, c=0)", 2, 1, 0, 6.5, "spp 4000");
-    test_edge("mitchell(b=0, c=0)", 2, 0, 0, 5.3, "spp 4000");
-    test_edge("tent", 1, -1, 0, 5.3, "spp 4000");
+    test_edge("mitchell(radius=3.2, b=0.2, c=0.9)", 3.2, 0.2, 0.9, 5.3, "sampler cosine spp 4000");
+    test_edge("mitchell(radius=0.5, b=0, c=1)", 0.5, 0, 1, 5.3, "sampler cosine spp 4000");
+    test_edge("mitchell(b=1, c=0)", 2, 1, 0, 6.5, "sampler cosine spp 4000");
+    test_edge("mitchell(b=0, c=0)", 2, 0, 0, 5.3, "sampler cosine spp 4000");
+    test_edge("tent", 1, -1, 0, 5.3, "sampler cosine spp 4000");
     test_edge("mitchell", 2, 1 / 3.0, 1 / 3.0, 6.5, "spp 4096 replicates 64 sampler stratified(cosine)");
-    test_even("mitchell", 1 / 3.0, 1 / 3.0, "spp 20000", 20000);
-    test_even("mitchell(b=0, c=0.5)", 0, 0.5, "spp 20000", 20000);
-    test_even("mitchell(b=0, c=1)", 0, 1, "spp 20000", 20000);
+    test_even("mitchell", 1 / 3.0, 1 / 3.0, "sampler cosine spp 20000", 20000);
+    test_even("mitchell(b=0, c=0.5)", 0, 0.5, "sampler cosine spp 20000", 20000);
+    test_even("mitchell(b=0, c=1)", 0, 1, "sampler cosine spp 20000", 20000);
     return tap_done();
 }
