@@ -35,6 +35,19 @@ static void cut_paths(struct cutter *c, struct mcr_paths *paths, uint32_t lanes)
     paths->slot = cut(c, lanes, sizeof(uint32_t));
 }
 
+/* Footprints, surface coordinates and tangents. */
+static void cut_coordinates(struct cutter *c, struct mcr_batch *b)
+{
+    struct mcr_surface_points *at = &b->at;
+    double **array[] = {&b->state.width, &b->state.spread, &b->sorted.width, &b->sorted.spread, &at->u, &at->v, &at->width, &at->gu[0],
+                        &at->gu[1], &at->gu[2], &at->gv[0], &at->gv[1], &at->gv[2]};
+    double **tangent[] = {&at->tx, &at->ty, &at->tz};
+    for (size_t i = 0; i < sizeof array / sizeof *array; i++)
+        *array[i] = cut(c, b->lanes, sizeof(double));
+    for (size_t i = 0; i < 3 && b->core->charts.needs & MCR_NEEDS_TANGENTS; i++)
+        *tangent[i] = cut(c, b->lanes, sizeof(double));
+}
+
 /* Arrays for combining techniques. */
 static void cut_light(struct cutter *c, struct mcr_light_lanes *l, uint32_t lanes)
 {
@@ -74,6 +87,8 @@ static void cut_all(struct cutter *c, struct mcr_batch *b)
         at->ny = at->gy;
         at->nz = at->gz;
     }
+    if (core->charts.needs)
+        cut_coordinates(c, b);
     at->material = cut(c, b->lanes, sizeof *at->material);
     at->primitive = cut(c, b->lanes, sizeof *at->primitive);
     b->order = cut(c, b->lanes, sizeof *b->order);

@@ -37,6 +37,7 @@ struct mcr_paths {
     uint32_t *index, *planned; /* the sample's number in its replicate, and how many are planned */
     uint32_t *bounce;       /* scattering events so far */
     uint32_t *slot;         /* where its radiance goes, in the ring of slots */
+    double *width, *spread; /* its pixel's footprint: diameter, and how that grows with the way; NULL without surface coordinates */
 };
 
 /* Surface properties by primitive, for gathering. A sphere has radius > 0 and its centre in c; all others are flat (n) but for ellipsoids. */
@@ -50,6 +51,28 @@ struct mcr_surfaces {
     uint32_t *zone;         /* of primitive p in zone[p + 1], and of a miss in zone[0]: see sort.c */
     uint32_t *quadric;      /* an ellipsoid's index among the accelerator's shapes, or UINT32_MAX; NULL without ellipsoids */
     int smooth;             /* triangles have normals of their own */
+};
+
+/*
+ * Surface coordinates, by primitive of a shape; where nothing needs them (needs is 0) there are no tables. On flat shapes
+ * u = gu.(p - c) + u0, with the c of struct mcr_surfaces; triangles are computed from their corners.
+ */
+struct mcr_charts {
+    uint32_t needs;         /* MCR_NEEDS_* of the materials of primitives */
+    uint32_t count;         /* primitives of shapes */
+    double *gu[3], *gv[3];  /* gradients, 1 / render length; 0 for round shapes */
+    double *u0, *v0;
+    double (*local)[9];     /* spheres and ellipsoids: rows of the map onto the unit sphere; NULL without them */
+};
+
+/* Points whose surface coordinates are asked for. */
+struct mcr_chart_lanes {
+    uint32_t n;
+    const int64_t *primitive;
+    const double *px, *py, *pz, *gx, *gy, *gz, *ox, *oy, *oz; /* as in struct mcr_points */
+    double *u, *v;
+    double *width;          /* of the footprint: comes as a diameter in render space, goes as one in units of u and v */
+    double *gu[3], *gv[3];  /* gradients of u and v along the surface */
 };
 
 /* What one call of a material plugin is for: a stateless plugin with all its materials, or one material. */
@@ -75,6 +98,7 @@ struct mcr_core {
     struct mcr_emitters *emitters;
     const struct mcr_emitter_functions *lights;
     struct mcr_surfaces surfaces;
+    struct mcr_charts charts;
     uint32_t group_count;
     struct mcr_group *group;
     uint32_t *group_of_material;
@@ -96,6 +120,10 @@ struct mcr_surface_points {
     double *reach;                  /* magnitude for the offset of rays that leave: max(|p|, |o|, reach of the shape) */
     uint32_t *material;
     int64_t *primitive;
+    /* NULL where nothing needs them: struct mcr_charts */
+    double *u, *v, *width;          /* coordinates, and the footprint's diameter in them */
+    double *gu[3], *gv[3];
+    double *tx, *ty, *tz;           /* tangents */
 };
 
 /* A stretch of points of one group. */
@@ -208,6 +236,12 @@ struct mcr_stages {
     void (*sort)(struct mcr_batch *batch);
     /* Points and path states in sorted order. */
     void (*surface)(struct mcr_batch *batch);
+    /* Surface coordinates of any points. */
+    void (*chart)(const struct mcr_core *core, const struct mcr_chart_lanes *lanes);
+    /* The footprints of new camera paths: states to .. to+n-1, whose rays begin at `ray`. */
+    void (*cones)(struct mcr_batch *batch, uint32_t to, uint32_t ray, uint32_t n);
+    /* Footprints, surface coordinates and tangents of all points, after `surface`; only where something needs them. */
+    void (*coordinates)(struct mcr_batch *batch);
     /* Adds radiance times throughput to the slots of points begin .. end-1. */
     void (*emit)(struct mcr_batch *batch, uint32_t begin, uint32_t end);
     /* Adds the background to the slots of the rays that hit nothing. */

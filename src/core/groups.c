@@ -104,7 +104,10 @@ struct mcr_points mcr_batch_points(const struct mcr_batch *batch, uint32_t begin
                                .ox = at->ox + begin,
                                .oy = at->oy + begin,
                                .oz = at->oz + begin,
-                               .side = at->side + begin};
+                               .side = at->side + begin,
+                               .tx = at->tx ? at->tx + begin : NULL,
+                               .ty = at->ty ? at->ty + begin : NULL,
+                               .tz = at->tz ? at->tz + begin : NULL};
 }
 
 static double norm(const double v[3])

@@ -161,6 +161,8 @@ static int32_t camera(struct mcr_batch *batch, struct mcr_pass *pass)
                                          .dy = batch->rdy + batch->rays,
                                          .dz = batch->rdz + batch->rays};
         core->stages->camera(core->scene, &lanes);
+        if (core->charts.needs)
+            core->stages->cones(batch, to, batch->rays, n);
         batch->rays += n;
         batch->states = (to + n + MCR_LANE_PAD - 1) / MCR_LANE_PAD * MCR_LANE_PAD;
         batch->camera_rays += n;
@@ -266,6 +268,8 @@ static int32_t step(struct mcr_batch *batch, struct mcr_pass *pass)
     if (core->background && batch->miss_count)
         core->stages->background(batch);
     TIMED(MCR_STAGE_SURFACE, core->stages->surface(batch));
+    if (core->charts.needs)
+        TIMED(MCR_STAGE_SURFACE, core->stages->coordinates(batch));
     if (batch->cap_r)
         mcr_compat_lower_caps(batch);
     TIMED(MCR_STAGE_EMISSION, status = emission(batch));

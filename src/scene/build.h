@@ -24,6 +24,8 @@ struct mcr_build {
     uint8_t *used;                         /* by material */
 
     uint64_t vertex_room, triangle_room, normal_room, uv_room;
+    uint32_t needs;                        /* MCR_NEEDS_* of all materials: triangles without coordinates are given some */
+    uint32_t plain_uv;                     /* the first of 3 coordinates for them: (0, 0), (1, 0), (0, 1) */
     int planes_emit;                       /* a plane's material emits */
     struct mcr_place plane_place;          /* of the first such plane */
     double extent;                         /* the largest coordinate relative to the camera, world units */
@@ -133,6 +135,8 @@ struct mcr_shape *mcr_build_new_shape(struct mcr_build *build, const struct mcr_
  */
 int mcr_build_add_triangle(struct mcr_build *build, uint32_t material, int mirrored, const uint32_t vertex[3], const uint32_t normal[3],
                            const uint32_t uv[3]);
+/* Stores a pair of surface coordinates; returns its number. */
+uint32_t mcr_build_add_uv(struct mcr_build *build, double u, double v);
 /* Stores a vertex; returns its number. One that is too far out is an error at `place`. */
 uint32_t mcr_build_add_vertex(struct mcr_build *build, const double at[3], const char *of, struct mcr_place place);
 

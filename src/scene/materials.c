@@ -43,8 +43,12 @@ static void create(struct mcr_build *build, const struct mcr_item *block, struct
         return;
     }
     material->node = mcr_material_create(build->arena, build->diagnostics, build->registry, block);
-    if (material->node)
-        mcr_material_traits(material->node, build->diagnostics, &material->traits);
+    if (!material->node)
+        return;
+    mcr_material_traits(material->node, build->diagnostics, &material->traits);
+    if (((const struct mcr_material_plugin *)(const void *)material->node->descriptor)->flags & MCR_MATERIAL_TANGENTS)
+        material->needs |= MCR_NEEDS_TANGENTS;
+    build->needs |= material->needs;
 }
 
 void mcr_build_materials(struct mcr_build *build, const struct mcr_item *root)

@@ -33,6 +33,8 @@ struct mcr_shape {
     double e[3][3];
     double n[3];        /* unit, front; plane, parallelogram, disk */
     double radius;
+    double axis[3][3];  /* for surface coordinates: sphere: unit vectors, turned with it; plane: the steps of 1 in u and in v, world lengths */
+    double uv[2];       /* plane: of c */
     struct mcr_place place;
 };
 
@@ -46,14 +48,19 @@ struct mcr_triangles {
     double *nx, *ny, *nz;        /* normal_count, unit */
     uint32_t (*normal)[3];       /* count, or NULL if no mesh has normals; UINT32_MAX: this triangle has none */
     double *u, *v;               /* uv_count */
-    uint32_t (*uv)[3];           /* count, or NULL */
+    uint32_t (*uv)[3];           /* count, or NULL if no material needs coordinates and no shape gives any */
 };
+
+/* What a material asks of the points on its surface. */
+#define MCR_NEEDS_COORDINATES 1u /* u and v: it has textures */
+#define MCR_NEEDS_TANGENTS 2u    /* its plugin says so */
 
 struct mcr_scene_material {
     const char *name;
     struct mcr_place place;
     struct mcr_node *node;                       /* descriptor is a struct mcr_material_plugin */
     struct mcr_material_traits traits;
+    uint32_t needs;                              /* MCR_NEEDS_* */
 };
 
 enum mcr_camera_kind { MCR_CAMERA_PERSPECTIVE, MCR_CAMERA_ORTHOGRAPHIC, MCR_CAMERA_THIN_LENS };
