@@ -65,6 +65,30 @@ static void cut_light(struct cutter *c, struct mcr_light_lanes *l, uint32_t lane
     l->of = cut(c, lanes, sizeof *l->of);
 }
 
+/* The inputs of points on emitters that look-ups find. */
+static void cut_emitter_inputs(struct cutter *c, struct mcr_batch *b)
+{
+    struct mcr_light_lanes *l = &b->light;
+    double **array[] = {&l->u, &l->v, &l->width, &l->gu[0], &l->gu[1], &l->gu[2], &l->gv[0], &l->gv[1], &l->gv[2]};
+    l->input = cut(c, (size_t)b->core->channels * b->lanes, sizeof(double));
+    for (size_t i = 0; i < sizeof array / sizeof *array && b->core->charts.needs; i++)
+        *array[i] = cut(c, b->lanes, sizeof(double));
+    if (b->core->charts.needs)
+        l->at_primitive = cut(c, b->lanes, sizeof *l->at_primitive);
+}
+
+static void cut_textures(struct cutter *c, struct mcr_batch *b)
+{
+    struct mcr_texture_lanes *t = &b->textures;
+    double **array[] = {&t->u, &t->v, &t->width, &t->r, &t->g, &t->b};
+    for (size_t i = 0; i < sizeof array / sizeof *array; i++)
+        *array[i] = cut(c, b->lanes, sizeof(double));
+    t->head = cut(c, b->core->scene->material_count, sizeof *t->head);
+    t->next = cut(c, b->lanes, sizeof *t->next);
+    t->lane = cut(c, b->lanes, sizeof *t->lane);
+    t->present = cut(c, b->lanes, sizeof *t->present);
+}
+
 static void cut_all(struct cutter *c, struct mcr_batch *b)
 {
     const struct mcr_core *core = b->core;
@@ -116,6 +140,10 @@ static void cut_all(struct cutter *c, struct mcr_batch *b)
     b->camera_y = cut(c, rays, sizeof(double));
     if (core->combines)
         cut_light(c, &b->light, b->lanes);
+    if (core->combines && core->varying_emitters)
+        cut_emitter_inputs(c, b);
+    if (core->textured)
+        cut_textures(c, b);
     b->scratch = cut(c, core->scratch_bytes, 1);
 }
 
@@ -133,6 +161,8 @@ int mcr_batch_init(struct mcr_batch *batch, struct mcr_core *core)
     memset(batch->memory, 0, c.used);
     c = (struct cutter){batch->memory, 0};
     cut_all(&c, batch);
+    for (uint32_t m = 0; core->textured && m < core->scene->material_count; m++)
+        batch->textures.head[m] = UINT32_MAX;
     batch->context.core = batch;
     batch->context.has_lights = core->scene->has_lights != 0;
     return 0;

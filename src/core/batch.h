@@ -75,6 +75,24 @@ struct mcr_chart_lanes {
     double *gu[3], *gv[3];  /* gradients of u and v along the surface */
 };
 
+/* A parameter that is a texture, of one material. */
+struct mcr_textured {
+    uint32_t channel;               /* of the group's */
+    int colour;                     /* three channels, else a number in one */
+    const struct mcr_texture *texture;
+};
+
+/*
+ * A material of a group's tree and where its inputs are: the group's own material first, then those inside it. The channels of a node are those of its
+ * parameters, followed by what the host adds to its emission: red, green, blue, and the sides (MCR_MATERIAL_EMITS_*) as a number.
+ */
+struct mcr_layer {
+    const struct mcr_node *node;    /* the first material's */
+    uint32_t channel;               /* the first of 3 * parameters */
+    uint32_t emission;              /* the first of 4, or UINT32_MAX: the host adds nothing */
+};
+#define MCR_EMISSION_CHANNELS 4u
+
 /* What one call of a material plugin is for: a stateless plugin with all its materials, or one material. */
 struct mcr_group {
     const struct mcr_material_plugin *plugin;
@@ -83,10 +101,13 @@ struct mcr_group {
     uint32_t material_count;        /* how many materials are in it */
     uint32_t first;                 /* one of them */
     int scatters, emits;
-    uint32_t channels;              /* 3 * parameters */
+    uint32_t layer_count;
+    struct mcr_layer *layer;
+    uint32_t channels;              /* of all layers */
     double *constant;               /* channels * MCR_LANE_PAD: each value MCR_LANE_PAD times; of the first material */
-    double **table;                 /* channels arrays of scene->material_count values, for groups of several materials */
-    uint8_t *varies;                /* channels: whether the group's materials differ in it */
+    double **table;                 /* channels arrays of scene->material_count values, where the group has several materials; else NULL */
+    uint8_t *varies;                /* channels: whether the group's materials differ in it, or one has a texture there */
+    int textured;                   /* one has */
 };
 
 /* What all threads share: immutable during a pass. */
@@ -102,6 +123,9 @@ struct mcr_core {
     uint32_t group_count;
     struct mcr_group *group;
     uint32_t *group_of_material;
+    uint32_t *textured_from;        /* by material: textured[textured_from[m]] .. textured[textured_from[m + 1] - 1]; NULL: nothing is textured */
+    struct mcr_textured *textured;
+    int varying_emitters;           /* the inputs of some that emit are not the same everywhere */
     uint32_t capacity;              /* rays in a batch */
     uint32_t channels;              /* most of any group */
     uint32_t dimensions;            /* of the sampler's techniques, one bounce */
@@ -156,6 +180,18 @@ struct mcr_light_lanes {
     /* points on emitters, compact, of one group */
     double *px, *py, *pz, *nx, *ny, *nz, *tx, *ty, *tz, *side, *lr, *lg, *lb;
     uint32_t *material, *of;
+    double *input;                  /* theirs, as lane_input; NULL where no emitter's vary */
+    /* their surface coordinates; NULL without struct mcr_charts */
+    int64_t *at_primitive;
+    double *u, *v, *width, *gu[3], *gv[3];
+};
+
+/* For looking up textures of stretches with several materials. */
+struct mcr_texture_lanes {
+    uint32_t *head;                 /* by material: its first lane, or UINT32_MAX */
+    uint32_t *next;                 /* by lane */
+    uint32_t *lane, *present;       /* lanes of one material; materials there are */
+    double *u, *v, *width, *r, *g, *b;
 };
 
 struct mcr_batch {
@@ -182,7 +218,9 @@ struct mcr_batch {
     double *material_density;       /* that the material's own sampling has for the drawn directions; for roulette */
     double *alive;                  /* 1 or 0 */
     struct mcr_light_lanes light;
-    double *lane_input;             /* channels * capacity: inputs that vary from lane to lane */
+    double *lane_input;             /* channels * lanes: inputs that vary from lane to lane, of all ranges */
+    struct mcr_texture_lanes textures; /* NULL without textures */
+    const struct mcr_group *asked;  /* the group whose plugin runs: `channel` and `stride` are its */
     const double **channel;         /* the pointers handed to plugins */
     uint32_t *stride;
     double *slot_r, *slot_g, *slot_b;
@@ -260,8 +298,14 @@ extern const struct mcr_stages mcr_stages_isa0, mcr_stages_isa1, mcr_stages_isa2
 int mcr_batch_init(struct mcr_batch *batch, struct mcr_core *core);
 void mcr_batch_fini(struct mcr_batch *batch);
 
-/* groups.c: inputs of the points begin .. end-1 of a group, whose materials are material[begin .. end-1], for a plugin's operation. */
-struct mcr_inputs mcr_group_inputs(struct mcr_batch *batch, const struct mcr_group *group, const uint32_t *material, uint32_t begin, uint32_t end);
+/* inputs.c: evaluates the inputs that vary at all points, once a round. */
+void mcr_inputs_prepare(struct mcr_batch *batch);
+/* Inputs of the points from `begin` on of a group, for a plugin's operation; those of layers inside are in batch->channel then. */
+struct mcr_inputs mcr_group_inputs(struct mcr_batch *batch, const struct mcr_group *group, uint32_t begin);
+/* The same for points elsewhere, evaluated now, with the coordinates in batch->light. */
+struct mcr_inputs mcr_emitter_inputs(struct mcr_batch *batch, const struct mcr_group *group, const uint32_t *material, uint32_t n);
+/* Inputs of a layer of the group that was asked for last. */
+struct mcr_inputs mcr_layer_inputs(const struct mcr_batch *batch, const struct mcr_layer *layer);
 struct mcr_points mcr_batch_points(const struct mcr_batch *batch, uint32_t begin, uint32_t end);
 
 #endif

@@ -202,7 +202,7 @@ static int32_t material_draw(const struct mcr_host *host, struct mcr_context *co
     const struct mcr_group *group = running_group(batch, at);
     if (!group || !group->plugin->draw)
         return MCR_E_UNSUPPORTED;
-    struct mcr_inputs inputs = mcr_group_inputs(batch, group, batch->at.material, batch->running->begin, batch->running->end);
+    struct mcr_inputs inputs = mcr_group_inputs(batch, group, batch->running->begin);
     struct frame was = enter(batch, context->node, mcr_material_bytes(group, at->n));
     int32_t status = group->plugin->draw(host, context, group->instance, &inputs, at, number, out, density);
     return leave(batch, &was, status);
@@ -215,7 +215,7 @@ static int32_t material_density(const struct mcr_host *host, struct mcr_context 
     const struct mcr_group *group = running_group(batch, at);
     if (!group || !group->plugin->density)
         return MCR_E_UNSUPPORTED;
-    struct mcr_inputs inputs = mcr_group_inputs(batch, group, batch->at.material, batch->running->begin, batch->running->end);
+    struct mcr_inputs inputs = mcr_group_inputs(batch, group, batch->running->begin);
     struct frame was = enter(batch, context->node, mcr_material_bytes(group, at->n));
     int32_t status = group->plugin->density(host, context, group->instance, &inputs, at, toward, density);
     return leave(batch, &was, status);
@@ -236,7 +236,7 @@ int32_t mcr_group_evaluate(struct mcr_batch *batch, const struct mcr_range *rang
 {
     const struct mcr_group *group = &batch->core->group[range->group];
     struct mcr_points at = mcr_batch_points(batch, range->begin, range->end);
-    struct mcr_inputs inputs = mcr_group_inputs(batch, group, batch->at.material, range->begin, range->end);
+    struct mcr_inputs inputs = mcr_group_inputs(batch, group, range->begin);
     struct frame was = enter(batch, group->node, mcr_material_bytes(group, at.n));
     int32_t status = group->plugin->evaluate(&batch->core->host, &batch->context, group->instance, &inputs, &at, toward, out);
     return leave(batch, &was, status);
@@ -250,33 +250,57 @@ int32_t mcr_group_density(struct mcr_batch *batch, const struct mcr_range *range
         memset(density, 0, at.n * sizeof *density);
         return MCR_OK;
     }
-    struct mcr_inputs inputs = mcr_group_inputs(batch, group, batch->at.material, range->begin, range->end);
+    struct mcr_inputs inputs = mcr_group_inputs(batch, group, range->begin);
     struct frame was = enter(batch, group->node, mcr_material_bytes(group, at.n));
     int32_t status = group->plugin->density(&batch->core->host, &batch->context, group->instance, &inputs, &at, toward, density);
     return leave(batch, &was, status);
 }
 
-static int32_t emission(struct mcr_batch *batch, const struct mcr_group *group, const struct mcr_points *at, const struct mcr_inputs *inputs,
-                        const struct mcr_colours *out)
+/* Adds what the host emits for a layer of the running group, on the sides that do. */
+static void add_emission(const struct mcr_batch *batch, const struct mcr_layer *layer, const struct mcr_points *at, const struct mcr_colours *out)
 {
-    struct frame was = enter(batch, group->node, mcr_material_bytes(group, at->n));
-    int32_t status = group->plugin->emission(&batch->core->host, &batch->context, group->instance, inputs, at, out);
-    return leave(batch, &was, status);
+    const double *const *channel = batch->channel + layer->emission, *sides = channel[3];
+    const uint32_t *stride = batch->stride + layer->emission;
+    double *const to[3] = {out->r, out->g, out->b};
+    for (int c = 0; c < 3; c++)
+        for (uint32_t i = 0; i < at->n; i++) {
+            uint32_t does = (uint32_t)sides[i * stride[3]], side = at->side[i] > 0 ? MCR_MATERIAL_EMITS_FRONT : MCR_MATERIAL_EMITS_BACK;
+            to[c][i] += does & side ? channel[c][i * stride[c]] : 0;
+        }
+}
+
+/* What the plugin of a layer emits, if it does, and what the host adds. */
+static int32_t layer_emission(struct mcr_batch *batch, const struct mcr_layer *layer, const struct mcr_points *at, const struct mcr_inputs *inputs,
+                              const struct mcr_colours *out)
+{
+    const struct mcr_material_plugin *plugin = (const struct mcr_material_plugin *)(const void *)layer->node->descriptor;
+    int32_t status = MCR_OK;
+    if (plugin->emission) {
+        struct frame was = enter(batch, layer->node, plugin->scratch_bytes ? plugin->scratch_bytes(layer->node->instance, at->n) : 0);
+        status = leave(batch, &was, plugin->emission(&batch->core->host, &batch->context, layer->node->instance, inputs, at, out));
+    } else {
+        memset(out->r, 0, at->n * sizeof *out->r);
+        memset(out->g, 0, at->n * sizeof *out->g);
+        memset(out->b, 0, at->n * sizeof *out->b);
+    }
+    if (!status && layer->emission != UINT32_MAX)
+        add_emission(batch, layer, at, out);
+    return status;
 }
 
 int32_t mcr_group_emission(struct mcr_batch *batch, const struct mcr_range *range, const struct mcr_colours *out)
 {
     const struct mcr_group *group = &batch->core->group[range->group];
     struct mcr_points at = mcr_batch_points(batch, range->begin, range->end);
-    struct mcr_inputs inputs = mcr_group_inputs(batch, group, batch->at.material, range->begin, range->end);
-    return emission(batch, group, &at, &inputs, out);
+    struct mcr_inputs inputs = mcr_group_inputs(batch, group, range->begin);
+    return layer_emission(batch, group->layer, &at, &inputs, out);
 }
 
 int32_t mcr_points_emission(struct mcr_batch *batch, const struct mcr_group *group, const struct mcr_points *at, const uint32_t *material,
                             const struct mcr_colours *out)
 {
-    struct mcr_inputs inputs = mcr_group_inputs(batch, group, material, 0, at->n);
-    return emission(batch, group, at, &inputs, out);
+    struct mcr_inputs inputs = mcr_emitter_inputs(batch, group, material, at->n);
+    return layer_emission(batch, group->layer, at, &inputs, out);
 }
 
 static int32_t source_fill(struct mcr_batch *batch, const struct mcr_node *node, const struct mcr_samples *samples, uint32_t first, uint32_t count,

@@ -103,6 +103,32 @@ static void emitter_surface(struct mcr_batch *batch, uint32_t k, uint32_t c)
     l->side[c] = side;
     l->material[c] = batch->core->surfaces.material[l->primitive[k]];
     l->of[c] = k;
+    if (l->u) {
+        l->at_primitive[c] = l->primitive[k];
+        l->width[c] = batch->sorted.width[k] + batch->sorted.spread[k] * l->distance[k];
+    }
+}
+
+/* Surface coordinates of the compact points, for textures. */
+static void emitter_coordinates(struct mcr_batch *batch, uint32_t n)
+{
+    const struct mcr_light_lanes *l = &batch->light;
+    batch->core->stages->chart(batch->core, &(struct mcr_chart_lanes){.n = n,
+                                                                      .primitive = l->at_primitive,
+                                                                      .px = l->px,
+                                                                      .py = l->py,
+                                                                      .pz = l->pz,
+                                                                      .gx = l->nx,
+                                                                      .gy = l->ny,
+                                                                      .gz = l->nz,
+                                                                      .ox = l->tx,
+                                                                      .oy = l->ty,
+                                                                      .oz = l->tz,
+                                                                      .u = l->u,
+                                                                      .v = l->v,
+                                                                      .width = l->width,
+                                                                      .gu = {l->gu[0], l->gu[1], l->gu[2]},
+                                                                      .gv = {l->gv[0], l->gv[1], l->gv[2]}});
 }
 
 /* Adds the weighted light that the lanes of one group see: throughput * f * Le * h(p) / (h(p) + others) / p. */
@@ -113,6 +139,8 @@ static int32_t add_group(struct mcr_batch *batch, uint32_t g, uint32_t count)
     struct mcr_points at = {.size = sizeof at, .n = count, .px = l->px, .py = l->py, .pz = l->pz, .nx = l->nx, .ny = l->ny, .nz = l->nz, .gx = l->nx,
                             .gy = l->ny, .gz = l->nz, .ox = l->tx, .oy = l->ty, .oz = l->tz, .side = l->side};
     struct mcr_colours out = {sizeof out, count, l->lr, l->lg, l->lb};
+    if (l->u && batch->core->group[g].textured)
+        emitter_coordinates(batch, count);
     int32_t status = mcr_points_emission(batch, &batch->core->group[g], &at, l->material, &out);
     for (uint32_t c = 0; c < count && !status; c++) {
         uint32_t k = l->of[c], slot = paths->slot[k];

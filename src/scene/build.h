@@ -22,6 +22,9 @@ struct mcr_build {
     } *sorted;                             /* materials by name */
     const char **names;                    /* the same, for suggestions */
     uint8_t *used;                         /* by material */
+    const struct mcr_item **material_block; /* by material */
+    uint8_t *material_state;               /* by material: how far it is made, enum of materials.c */
+    uint32_t material_depth;               /* materials that are being made, one inside the other */
 
     struct mcr_named_texture {
         const char *name;

@@ -54,7 +54,18 @@ struct mcr_triangles {
 
 /* What a material asks of the points on its surface. */
 #define MCR_NEEDS_COORDINATES 1u /* u and v: it has textures */
-#define MCR_NEEDS_TANGENTS 2u    /* its plugin says so */
+#define MCR_NEEDS_TANGENTS 2u    /* its plugin says so, or it has a normal map */
+#define MCR_NEEDS_NORMALS 4u     /* shading normals of its own: a normal map or bumps */
+
+/* What a material block may set beside its plugin's parameters: the core does it for every plugin. */
+struct mcr_surface_settings {
+    uint32_t emits;                              /* MCR_MATERIAL_EMITS_*: the sides that radiate `emission`; 0: none */
+    double emission[3];                          /* of a texture the mean */
+    const struct mcr_texture *emission_texture;  /* or NULL */
+    const struct mcr_texture *normal_map, *bump; /* or NULL */
+    double normal_strength;
+    double bump_height;                          /* world length */
+};
 
 struct mcr_scene_material {
     const char *name;
@@ -62,6 +73,7 @@ struct mcr_scene_material {
     struct mcr_node *node;                       /* descriptor is a struct mcr_material_plugin */
     struct mcr_material_traits traits;
     uint32_t needs;                              /* MCR_NEEDS_* */
+    struct mcr_surface_settings surface;
 };
 
 struct mcr_scene_texture {

@@ -25,6 +25,12 @@ struct mcr_texture_bounds {
 };
 const struct mcr_texture_bounds *mcr_texture_bounds(const struct mcr_texture *texture);
 
+/* A colour as a number: its luminance (Rec. 709), which of equal components is that number exactly. */
+static inline double mcr_texture_number(double r, double g, double b)
+{
+    return r + (0.7152 * (g - r) + 0.0722 * (b - r));
+}
+
 /* 0: lookups do the same for every width, so that none need be computed. */
 int mcr_texture_uses_width(const struct mcr_texture *texture);
 /* 1: red, green and blue are one number everywhere (a grey picture, a single channel, grey colours). */

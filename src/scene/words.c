@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "scene/words.h"
 
+#include <math.h>
+
 #include <string.h>
 
 #define COUNT(table) ((uint32_t)(sizeof(table) / sizeof(table)[0]))
@@ -191,6 +193,16 @@ static const struct mcr_parameter checker[] = {
     [CHECKER_FILTER] = CHOICE("filter", "box|none", "Whether a footprint sees the mean of what it covers."),
 };
 
+static const struct mcr_parameter surface[SURFACE_COUNT] = {
+    [SURFACE_EMISSION] = ROW("emission", MCR_TYPE_COLOUR, MCR_PARAMETER_VARYING, "W/(sr m^2)", 0, HUGE_VAL, 0, 0, 0,
+                             "Radiance that the surface emits beside what its material does; a colour or a texture."),
+    [SURFACE_EMISSION_SIDES] = CHOICE("emission_sides", "front|both", "The sides that emit it."),
+    [SURFACE_NORMAL_MAP] = WORD("normal_map", MCR_WORD_TEXTURE, 0, "Texture of shading normals in tangent space."),
+    [SURFACE_NORMAL_STRENGTH] = ROW("normal_strength", MCR_TYPE_NUMBER, 0, "", 0, 1e6, 1, 0, 0, "Multiplies the slopes of the normal map."),
+    [SURFACE_BUMP] = WORD("bump", MCR_WORD_TEXTURE, 0, "Texture of heights that tilt the shading normal."),
+    [SURFACE_BUMP_HEIGHT] = ROW("bump_height", MCR_TYPE_NUMBER, 0, "", -FAR, FAR, 0, 0, 0, "Length that the height 1 stands for; needed with bump."),
+};
+
 #define BLOCK(word, kind, role, table, text) { word, kind, role, COUNT(table), table, text }
 
 const struct mcr_block_word mcr_scene_blocks[] = {
@@ -200,7 +212,7 @@ const struct mcr_block_word mcr_scene_blocks[] = {
     BLOCK("film", NULL, MCR_BLOCK_FILM, film, "The picture."),
     BLOCK("render", NULL, MCR_BLOCK_RENDER, render, "How it is computed."),
     BLOCK("study", NULL, MCR_BLOCK_STUDY, study, "What `mcrender study` compares; other commands check it and do without."),
-    { "material", NULL, MCR_BLOCK_MATERIAL, 0, NULL, "A named material; its kind is a plugin, whose parameters are its settings." },
+    BLOCK("material", NULL, MCR_BLOCK_MATERIAL, surface, "A named material; its kind is a plugin, whose parameters are its settings, beside these."),
     BLOCK("texture", "checker", MCR_BLOCK_TEXTURE, checker, "Two colours, field by field."),
     BLOCK("plane", NULL, MCR_BLOCK_SHAPE, plane, "An infinite plane."),
     BLOCK("sphere", NULL, MCR_BLOCK_SHAPE, sphere, "A sphere; its front is outside."),
@@ -262,6 +274,7 @@ const char *mcr_word_form(uint32_t type)
         [MCR_WORD_PAIR_OR_NUMBER] = "a number or 2 numbers (u, v)",
         [MCR_WORD_UV] = "2 numbers (u, v)",
         [MCR_WORD_WRAP] = "repeat, mirror or clamp, or 2 of them (for u, for v)",
+        [MCR_WORD_TEXTURE] = "the name of a texture",
         [MCR_WORD_STOPS] = "a tuple of stops (position, colour)",
         [MCR_WORD_TRANSFORM] = "a block transform { ... }",
         [MCR_TYPE_NUMBER] = "a number",

@@ -40,6 +40,7 @@ enum mcr_word_type {
     MCR_WORD_PAIR_OR_NUMBER, /* x, or (u, v) */
     MCR_WORD_UV,          /* (u, v) */
     MCR_WORD_WRAP,        /* a word of `choices`, or (for u, for v) */
+    MCR_WORD_TEXTURE,     /* a texture's name */
     MCR_WORD_STOPS,       /* ((position, colour), ...) */
     MCR_WORD_TRANSFORM    /* a block of steps */
 };
@@ -104,6 +105,8 @@ enum { TEXTURE_SCALE, TEXTURE_OFFSET };
 enum { IMAGE_FILE = 2, IMAGE_WRAP, IMAGE_FILTER, IMAGE_COLOUR, IMAGE_CHANNEL };
 enum { CHECKER_EVEN = 2, CHECKER_ODD, CHECKER_FILTER };
 enum { GRADIENT_FROM = 2, GRADIENT_TO, GRADIENT_STOPS, GRADIENT_ALONG, GRADIENT_WRAP };
+/* What every material takes beside its plugin's parameters. */
+enum { SURFACE_EMISSION, SURFACE_EMISSION_SIDES, SURFACE_NORMAL_MAP, SURFACE_NORMAL_STRENGTH, SURFACE_BUMP, SURFACE_BUMP_HEIGHT, SURFACE_COUNT };
 enum { STEP_TRANSLATE, STEP_ROTATE, STEP_SCALE, STEP_MATRIX, STEP_LOOKAT };
 
 #define MCR_SETTINGS_LIMIT 24u /* no table is longer */
