@@ -77,6 +77,11 @@ static void cut_emitter_inputs(struct cutter *c, struct mcr_batch *b)
         l->at_primitive = cut(c, b->lanes, sizeof *l->at_primitive);
 }
 
+static int has_textures(const struct mcr_core *core)
+{
+    return core->textured || core->charts.needs & MCR_NEEDS_NORMALS;
+}
+
 static void cut_textures(struct cutter *c, struct mcr_batch *b)
 {
     struct mcr_texture_lanes *t = &b->textures;
@@ -87,6 +92,11 @@ static void cut_textures(struct cutter *c, struct mcr_batch *b)
     t->next = cut(c, b->lanes, sizeof *t->next);
     t->lane = cut(c, b->lanes, sizeof *t->lane);
     t->present = cut(c, b->lanes, sizeof *t->present);
+    double **normals[] = {&t->su, &t->sv, &t->step, &t->slope[0], &t->slope[1]};
+    for (size_t i = 0; i < sizeof normals / sizeof *normals && b->core->charts.needs & MCR_NEEDS_NORMALS; i++)
+        *normals[i] = cut(c, b->lanes, sizeof(double));
+    if (b->core->charts.needs & MCR_NEEDS_NORMALS)
+        t->front = cut(c, b->lanes, sizeof *t->front);
 }
 
 static void cut_all(struct cutter *c, struct mcr_batch *b)
@@ -106,7 +116,7 @@ static void cut_all(struct cutter *c, struct mcr_batch *b)
     cut_paths(c, &b->sorted, b->lanes);
     for (size_t i = 0; i < sizeof of_points / sizeof *of_points; i++)
         *of_points[i] = cut(c, b->lanes, sizeof(double));
-    if (!core->surfaces.smooth) {
+    if (!core->surfaces.smooth && !(core->charts.needs & MCR_NEEDS_NORMALS)) {
         at->nx = at->gx;
         at->ny = at->gy;
         at->nz = at->gz;
@@ -142,7 +152,7 @@ static void cut_all(struct cutter *c, struct mcr_batch *b)
         cut_light(c, &b->light, b->lanes);
     if (core->combines && core->varying_emitters)
         cut_emitter_inputs(c, b);
-    if (core->textured)
+    if (has_textures(core))
         cut_textures(c, b);
     b->scratch = cut(c, core->scratch_bytes, 1);
 }
@@ -161,7 +171,7 @@ int mcr_batch_init(struct mcr_batch *batch, struct mcr_core *core)
     memset(batch->memory, 0, c.used);
     c = (struct cutter){batch->memory, 0};
     cut_all(&c, batch);
-    for (uint32_t m = 0; core->textured && m < core->scene->material_count; m++)
+    for (uint32_t m = 0; has_textures(core) && m < core->scene->material_count; m++)
         batch->textures.head[m] = UINT32_MAX;
     batch->context.core = batch;
     batch->context.has_lights = core->scene->has_lights != 0;

@@ -192,6 +192,9 @@ struct mcr_texture_lanes {
     uint32_t *next;                 /* by lane */
     uint32_t *lane, *present;       /* lanes of one material; materials there are */
     double *u, *v, *width, *r, *g, *b;
+    /* for shading normals: NULL where none are tilted */
+    double *su, *sv, *step, *slope[2];
+    double (*front)[3];
 };
 
 struct mcr_batch {
@@ -298,6 +301,8 @@ extern const struct mcr_stages mcr_stages_isa0, mcr_stages_isa1, mcr_stages_isa2
 int mcr_batch_init(struct mcr_batch *batch, struct mcr_core *core);
 void mcr_batch_fini(struct mcr_batch *batch);
 
+/* normals.c: tilts shading normals by normal maps and bumps, after `coordinates`; only where a material has them. */
+void mcr_normals_tilt(struct mcr_batch *batch);
 /* inputs.c: evaluates the inputs that vary at all points, once a round. */
 void mcr_inputs_prepare(struct mcr_batch *batch);
 /* Inputs of the points from `begin` on of a group, for a plugin's operation; those of layers inside are in batch->channel then. */

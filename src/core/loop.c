@@ -270,6 +270,8 @@ static int32_t step(struct mcr_batch *batch, struct mcr_pass *pass)
     TIMED(MCR_STAGE_SURFACE, core->stages->surface(batch));
     if (core->charts.needs)
         TIMED(MCR_STAGE_SURFACE, core->stages->coordinates(batch));
+    if (core->charts.needs & MCR_NEEDS_NORMALS)
+        TIMED(MCR_STAGE_SURFACE, mcr_normals_tilt(batch));
     TIMED(MCR_STAGE_MATERIAL, mcr_inputs_prepare(batch));
     if (batch->cap_r)
         mcr_compat_lower_caps(batch);

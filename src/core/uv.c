@@ -156,9 +156,9 @@ void MCR_ISA_NAME(mcr_stage_cones)(struct mcr_batch *batch, uint32_t to, uint32_
  * Along growing u at constant v: across the gradient of v, in the plane of the shading normal. Where v does not change, along the gradient of u; where
  * there is neither (at a pole, or all corners of a triangle at one point of the texture), any direction.
  */
-static void tangent_lane(const struct mcr_surface_points *at, uint32_t k)
+static void tangent_lane(const struct mcr_surface_points *at, const double *nx, const double *ny, const double *nz, uint32_t k)
 {
-    double n[3] = {at->nx[k], at->ny[k], at->nz[k]}, gu[3], gv[3], t[3], bx, by, bz, along = 0, square = 0, dot = 0;
+    double n[3] = {nx[k], ny[k], nz[k]}, gu[3], gv[3], t[3], bx, by, bz, along = 0, square = 0, dot = 0;
     for (int j = 0; j < 3; j++) {
         gu[j] = at->gu[j][k];
         gv[j] = at->gv[j][k];
@@ -215,6 +215,9 @@ void MCR_ISA_NAME(mcr_stage_coordinates)(struct mcr_batch *batch)
                                                                          .width = at->width,
                                                                          .gu = {at->gu[0], at->gu[1], at->gu[2]},
                                                                          .gv = {at->gv[0], at->gv[1], at->gv[2]}});
+    /* Shading normals that are still to be tilted are the geometric ones, unless triangles have their own. */
+    int smooth = batch->core->surfaces.smooth;
+    const double *nx = smooth ? at->nx : at->gx, *ny = smooth ? at->ny : at->gy, *nz = smooth ? at->nz : at->gz;
     for (uint32_t k = 0; k < batch->points && at->tx; k++)
-        tangent_lane(at, k);
+        tangent_lane(at, nx, ny, nz, k);
 }

@@ -217,11 +217,30 @@ static void check_beside(struct mcr_build *build, const struct mcr_settings *set
                   settings->word->setting[beside].name);
 }
 
+/* Normals that lean far on the whole are mostly data that was taken for colours: the code for "flat" then decodes to a lean of 39 degrees. */
+static void check_lean(struct mcr_build *build, const struct mcr_settings *settings, const struct mcr_texture *map)
+{
+    const struct mcr_value *value = settings->value[SURFACE_NORMAL_MAP];
+    const double *mean;
+    double x, y, z;
+    if (!map)
+        return;
+    mean = mcr_texture_bounds(map)->mean;
+    x = 2 * mean[0] - 1;
+    y = 2 * mean[1] - 1;
+    z = 2 * mean[2] - 1;
+    if (z <= 0 || x * x + y * y > z * z / 3)
+        mcr_report(build->diagnostics, MCR_WARNING, value->place,
+                   "the normals of texture '%s' lean by more than 30 degrees in the mean: a picture of normals is data, with 'colour linear'",
+                   mcr_value_resolve(value)->text);
+}
+
 static void read_surface(struct mcr_build *build, const struct mcr_settings *settings, int damaged, struct mcr_scene_material *material)
 {
     struct mcr_surface_settings *surface = &material->surface;
     read_emission(build, settings, surface);
     surface->normal_map = read_texture(build, settings, SURFACE_NORMAL_MAP);
+    check_lean(build, settings, surface->normal_map);
     surface->bump = read_texture(build, settings, SURFACE_BUMP);
     mcr_read_number(build, settings, SURFACE_NORMAL_STRENGTH, &surface->normal_strength);
     mcr_read_number(build, settings, SURFACE_BUMP_HEIGHT, &surface->bump_height);
