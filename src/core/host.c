@@ -221,6 +221,92 @@ static int32_t material_density(const struct mcr_host *host, struct mcr_context 
     return leave(batch, &was, status);
 }
 
+/* ---- Materials inside materials ---- */
+
+/* The layer of the running group that holds a child: its inputs are there. One that is there twice has the same in both. */
+static const struct mcr_layer *layer_of(const struct mcr_batch *batch, const struct mcr_child *child)
+{
+    const struct mcr_group *group = batch->asked;
+    for (uint32_t l = 1; group && l < group->layer_count; l++)
+        if (group->layer[l].node == node_of(child))
+            return &group->layer[l];
+    return NULL;
+}
+
+static const struct mcr_material_plugin *material_plugin(const struct mcr_node *node)
+{
+    return (const struct mcr_material_plugin *)(const void *)node->descriptor;
+}
+
+static uint64_t layer_bytes(const struct mcr_node *node, uint32_t n)
+{
+    const struct mcr_material_plugin *plugin = material_plugin(node);
+    return plugin->scratch_bytes ? plugin->scratch_bytes(node->instance, n) : 0;
+}
+
+/* Calls operation OPERATION of a child with the arguments behind `inputs`. */
+#define WITH_CHILD(OPERATION, ...)                                                                                  struct mcr_batch *batch = batch_of(context);                                                                    const struct mcr_layer *layer = layer_of(batch, child);                                                         if (!layer)                                                                                                         return MCR_E_INVALID;                                                                                       if (!material_plugin(layer->node)->OPERATION)                                                                       return MCR_E_UNSUPPORTED;                                                                                   struct mcr_inputs inputs = mcr_layer_inputs(batch, layer);                                                      struct frame was = enter(batch, layer->node, layer_bytes(layer->node, at->n));                                  return leave(batch, &was, material_plugin(layer->node)->OPERATION(host, context, layer->node->instance, &inputs, at, __VA_ARGS__))
+
+static int32_t material_child_traits(const struct mcr_host *host, struct mcr_context *context, const struct mcr_child *child,
+                                     struct mcr_material_traits *traits)
+{
+    return mcr_creation_host()->material_child_traits(host, context, child, traits);
+}
+
+static int32_t material_child_evaluate(const struct mcr_host *host, struct mcr_context *context, const struct mcr_child *child,
+                                       const struct mcr_points *at, const struct mcr_directions *toward, const struct mcr_colours *out)
+{
+    WITH_CHILD(evaluate, toward, out);
+}
+
+static int32_t material_child_draw(const struct mcr_host *host, struct mcr_context *context, const struct mcr_child *child,
+                                   const struct mcr_points *at, const double *const *number, const struct mcr_directions *out, double *density)
+{
+    WITH_CHILD(draw, number, out, density);
+}
+
+static int32_t material_child_density(const struct mcr_host *host, struct mcr_context *context, const struct mcr_child *child,
+                                      const struct mcr_points *at, const struct mcr_directions *toward, double *density)
+{
+    WITH_CHILD(density, toward, density);
+}
+
+static int32_t material_child_delta(const struct mcr_host *host, struct mcr_context *context, const struct mcr_child *child,
+                                    const struct mcr_points *at, const double *const *number, const struct mcr_directions *out,
+                                    double *probability, const struct mcr_colours *weight)
+{
+    WITH_CHILD(delta, number, out, probability, weight);
+}
+
+static int32_t material_child_passes(const struct mcr_host *host, struct mcr_context *context, const struct mcr_child *child,
+                                     const struct mcr_points *at, const struct mcr_colours *out)
+{
+    WITH_CHILD(passes, out);
+}
+
+static int32_t material_child_albedo(const struct mcr_host *host, struct mcr_context *context, const struct mcr_child *child,
+                                     const struct mcr_points *at, const struct mcr_colours *out)
+{
+    WITH_CHILD(albedo, out);
+}
+
+static int32_t layer_emission(struct mcr_batch *batch, const struct mcr_layer *layer, const struct mcr_points *at, const struct mcr_inputs *inputs,
+                              const struct mcr_colours *out);
+
+static int32_t material_child_emission(const struct mcr_host *host, struct mcr_context *context, const struct mcr_child *child,
+                                       const struct mcr_points *at, const struct mcr_colours *out)
+{
+    struct mcr_batch *batch = batch_of(context);
+    const struct mcr_layer *layer = layer_of(batch, child);
+    (void)host;
+    if (!layer)
+        return MCR_E_INVALID;
+    if (!material_plugin(layer->node)->emission && layer->emission == UINT32_MAX)
+        return MCR_E_UNSUPPORTED;
+    struct mcr_inputs inputs = mcr_layer_inputs(batch, layer);
+    return layer_emission(batch, layer, at, &inputs, out);
+}
+
 static uint32_t has_lights(const struct mcr_host *host, struct mcr_context *context)
 {
     (void)host;
@@ -273,10 +359,10 @@ static void add_emission(const struct mcr_batch *batch, const struct mcr_layer *
 static int32_t layer_emission(struct mcr_batch *batch, const struct mcr_layer *layer, const struct mcr_points *at, const struct mcr_inputs *inputs,
                               const struct mcr_colours *out)
 {
-    const struct mcr_material_plugin *plugin = (const struct mcr_material_plugin *)(const void *)layer->node->descriptor;
+    const struct mcr_material_plugin *plugin = material_plugin(layer->node);
     int32_t status = MCR_OK;
     if (plugin->emission) {
-        struct frame was = enter(batch, layer->node, plugin->scratch_bytes ? plugin->scratch_bytes(layer->node->instance, at->n) : 0);
+        struct frame was = enter(batch, layer->node, layer_bytes(layer->node, at->n));
         status = leave(batch, &was, plugin->emission(&batch->core->host, &batch->context, layer->node->instance, inputs, at, out));
     } else {
         memset(out->r, 0, at->n * sizeof *out->r);
@@ -351,12 +437,23 @@ static uint64_t tree_bytes(const struct mcr_node *node, uint32_t n)
     return padded(node_bytes(node, n)) + below;
 }
 
+/* The same below a material. */
+static uint64_t layers_bytes(const struct mcr_node *node, uint32_t n)
+{
+    uint64_t below = 0;
+    for (uint32_t c = 0; c < node->child_count; c++) {
+        uint64_t bytes = layers_bytes(node->child[c], n);
+        below = bytes > below ? bytes : below;
+    }
+    return padded(layer_bytes(node, n)) + below;
+}
+
 uint64_t mcr_host_scratch(const struct mcr_core *core)
 {
     const struct mcr_sampler *sampler = core->scene->sampler;
     uint64_t most = 0, sources = 0;
     for (uint32_t g = 0; g < core->group_count; g++) {
-        uint64_t bytes = padded(mcr_material_bytes(&core->group[g], core->capacity));
+        uint64_t bytes = layers_bytes(core->group[g].node, core->capacity);
         most = bytes > most ? bytes : most;
     }
     for (uint32_t s = 0; s <= sampler->source_count; s++) {
@@ -386,5 +483,13 @@ void mcr_host_init(struct mcr_core *core)
                                    .light_density_point = light_density_point,
                                    .material_draw = material_draw,
                                    .material_density = material_density,
-                                   .has_lights = has_lights};
+                                   .has_lights = has_lights,
+                                   .material_child_traits = material_child_traits,
+                                   .material_child_evaluate = material_child_evaluate,
+                                   .material_child_draw = material_child_draw,
+                                   .material_child_density = material_child_density,
+                                   .material_child_emission = material_child_emission,
+                                   .material_child_delta = material_child_delta,
+                                   .material_child_passes = material_child_passes,
+                                   .material_child_albedo = material_child_albedo};
 }

@@ -63,7 +63,7 @@ struct mcr_quirks {
     uint32_t wanted; /* bits */
 };
 
-/* The host table for creation: report, child_techniques and has_lights work, the rest returns MCR_E_UNSUPPORTED. */
+/* The host table for creation: report, child_techniques, material_child_traits and has_lights work, the rest returns MCR_E_UNSUPPORTED. */
 const struct mcr_host *mcr_creation_host(void);
 
 /*
