@@ -37,7 +37,7 @@ _mcrender()
     --plugin) mapfile -t COMPREPLY < <(compgen -f -X '!*.so' -- "$word"; compgen -d -- "$word"); return ;;
     -o | --report) mapfile -t COMPREPLY < <(compgen -f -- "$word"); return ;;
     --roulette) mapfile -t COMPREPLY < <(compgen -W 'on off' -- "$word"); return ;;
-    --spp | --depth | --seed | --threads | --size | --crop | --batch | --set | --exposure) return ;;
+    --spp | --depth | --seed | --threads | --size | --crop | --batch | --set | --exposure | --tone) return ;;
     esac
     if [ "$command" = compare ]; then
         _mcrender_compare "$program" "$word" "$before"

@@ -9,7 +9,7 @@
 
 enum option_id {
     OUTPUT, SPP, DEPTH, SEED, THREADS, SAMPLER, SIZE, CROP, PRECISION, ACCEL, ISA, BATCH, REPLICATES, ROULETTE, COMPAT, SET, PLUGIN, LAYERS, REPORT,
-    PROFILE, BITS, EXPOSURE, QUIET, WERROR, HELP, VERSION
+    PROFILE, BITS, EXPOSURE, TONE, QUIET, WERROR, HELP, VERSION
 };
 
 /* Where an option may stand. */
@@ -42,6 +42,7 @@ static const struct option {
     {PROFILE, RENDER, "--profile", NULL, "time of each stage"},
     {BITS, RENDER, "--bits", "8|16", "of PPM, PNG, TIFF"},
     {EXPOSURE, RENDER, "--exposure", "STOPS", "of PPM, PNG, JPEG"},
+    {TONE, RENDER, "--tone", "CURVE", "of PPM, PNG, JPEG"},
     {QUIET, RENDER | CHECK | STUDY, "--quiet", NULL, "errors and warnings"},
     {WERROR, RENDER | CHECK | STUDY, "--werror", NULL, "warnings are errors"},
     {HELP, ALL, "--help", NULL, "this text"},
@@ -67,9 +68,8 @@ void mcr_options_help(FILE *to)
         }
         fputs("\n", to);
     }
-    fputs("\nThe extension of FILE tells the format: ppm (or none), pfm, exr, png, jpg, tiff,\n"
-          "hdr. An option replaces what the scene says. --threads, --isa, --batch and\n"
-          "--accel never change the image.\n"
+    fputs("\nFILE's ending tells its format: ppm (or none), pfm, exr, png, jpg, tiff, hdr.\n"
+          "Options replace what the scene says; --threads, --isa, --batch, --accel no bit.\n"
           "Status: 0 done, 1 failed, 2 usage, 3 scene error, 130 interrupted after saving.\n",
           to);
 }
@@ -120,8 +120,9 @@ static int take_set(struct mcr_options *options, const char *text)
 static int take_exposure(struct mcr_options *options, const char *text)
 {
     char *end;
-    options->exposure = strtod(text, &end);
-    if (end == text || *end || !(options->exposure >= -64 && options->exposure <= 64))
+    options->overrides.has_exposure = 1;
+    options->overrides.exposure = strtod(text, &end);
+    if (end == text || *end || !(options->overrides.exposure >= -64 && options->overrides.exposure <= 64))
         return mcr_usage_error("--exposure expects a number of stops from -64 to 64, not '%s'", text);
     return 0;
 }
@@ -222,6 +223,9 @@ static int take(struct mcr_options *options, const struct option *option, const 
         return 0;
     case EXPOSURE:
         return take_exposure(options, text);
+    case TONE:
+        o->tone = text;
+        return 0;
     case PROFILE:
         options->profile = 1;
         return 0;

@@ -31,7 +31,6 @@ struct mcr_options {
     int variance_layer;                           /* --layers variance */
     uint32_t isa;
     uint32_t bits;
-    double exposure;
     int quiet, werror, profile;
     int help, version;
     struct mcr_study_options study;

@@ -187,7 +187,8 @@ static int write_all(struct mcr_report_data *data, struct targets *targets)
         return MCR_EXIT_FAILED;
     }
     describe(&meta, data);
-    struct mcr_write_options options = {data->options->bits, data->options->exposure, meta.count, meta.attribute};
+    struct mcr_write_options options = {data->options->bits, data->loaded->scene->film.exposure, meta.count, meta.attribute,
+                                        data->loaded->scene->film.tone};
     for (uint32_t i = 0; i < data->output_count; i++) {
         struct mcr_report_output *output = &data->output[i];
         output->layers = image->channels == LAYER_CHANNELS && holds_layers(output->path) > 0;

@@ -61,10 +61,15 @@ void mcr_report_text(FILE *to, const struct mcr_report_data *data)
     double seconds = stats->wall_seconds;
     fprintf(to, "scene     %s: %ux%u, %u spp, depth %u, seed %llu\n", data->options->scene, scene->film.x1 - scene->film.x0,
             scene->film.y1 - scene->film.y0, render->spp, render->depth, (unsigned long long)render->seed);
-    fprintf(to, "sampler   %s; numbers %s%s; roulette %s\n", scene->sampler->expression, data->film->correlated ? "correlated" : "independent",
+    fprintf(to, "sampler   %s%s; numbers %s%s; roulette %s\n", scene->sampler->expression, scene->sampler_chosen ? " (chosen for this scene, which names none)" : "", data->film->correlated ? "correlated" : "independent",
             data->film->correlated && render->replicates < 2 ? ", one replicate" : "", render->roulette ? "on" : "off");
     if (data->film->correlated && render->replicates > 1)
         fprintf(to, "          %u replicates of %u samples\n", render->replicates, render->spp / render->replicates);
+    if (scene->film.exposure != 0 || scene->film.tone.curve != MCR_TONE_LINEAR) {
+        char tone[MCR_TONE_TEXT];
+        mcr_tone_text(&scene->film.tone, tone);
+        fprintf(to, "display   tone %s, exposure %g stops, in files of 8 and 16 bits only\n", tone, scene->film.exposure);
+    }
     text_loaded(to, data);
     if (render->compat) {
         char compat[MCR_COMPAT_TEXT];
@@ -123,7 +128,7 @@ static void json_scene(struct mcr_json_writer *json, const struct mcr_report_dat
 {
     const struct mcr_scene *scene = data->loaded->scene;
     const struct mcr_render_settings *render = &scene->render;
-    char hash[20], compat[MCR_COMPAT_TEXT];
+    char hash[20], compat[MCR_COMPAT_TEXT], tone[MCR_TONE_TEXT];
     snprintf(hash, sizeof hash, "%016llx", (unsigned long long)scene->hash);
     mcr_json_begin_object(json, "scene");
     mcr_json_text(json, "file", data->options->scene);
@@ -137,6 +142,7 @@ static void json_scene(struct mcr_json_writer *json, const struct mcr_report_dat
     mcr_json_end(json);
     mcr_json_begin_object(json, "settings");
     mcr_json_text(json, "sampler", scene->sampler->expression);
+    mcr_json_boolean(json, "sampler_chosen", scene->sampler_chosen);
     mcr_json_unsigned(json, "spp", render->spp);
     mcr_json_unsigned(json, "depth", render->depth);
     mcr_json_unsigned(json, "seed", render->seed);
@@ -145,6 +151,9 @@ static void json_scene(struct mcr_json_writer *json, const struct mcr_report_dat
     mcr_compat_text(render->compat, compat);
     mcr_json_text(json, "compat", compat);
     mcr_json_boolean(json, "biased", render->compat != 0);
+    mcr_tone_text(&scene->film.tone, tone);
+    mcr_json_text(json, "tone", tone);
+    mcr_json_number(json, "exposure", scene->film.exposure);
     mcr_json_text(json, "precision", "double");
     mcr_json_text(json, "accelerator", mcr_accel_name(data->accel->kind));
     mcr_json_text(json, "instruction_set", mcr_cpu_isa_name(data->options->isa));

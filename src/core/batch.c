@@ -22,7 +22,7 @@ static void *cut(struct cutter *c, size_t count, size_t size)
     return at;
 }
 
-static void cut_paths(struct cutter *c, struct mcr_paths *paths, uint32_t lanes)
+static void cut_paths(struct cutter *c, struct mcr_paths *paths, uint32_t lanes, const struct mcr_core *core)
 {
     paths->r = cut(c, lanes, sizeof(double));
     paths->g = cut(c, lanes, sizeof(double));
@@ -33,6 +33,12 @@ static void cut_paths(struct cutter *c, struct mcr_paths *paths, uint32_t lanes)
     paths->planned = cut(c, lanes, sizeof(uint32_t));
     paths->bounce = cut(c, lanes, sizeof(uint32_t));
     paths->slot = cut(c, lanes, sizeof(uint32_t));
+    for (uint32_t i = 0; i < MCR_INTERIORS && core->interiors; i++)
+        paths->inside[i] = cut(c, lanes, sizeof(uint32_t));
+    if (core->needs_pixel) {
+        paths->x = cut(c, lanes, sizeof(uint32_t));
+        paths->y = cut(c, lanes, sizeof(uint32_t));
+    }
 }
 
 /* Footprints, surface coordinates and tangents. */
@@ -65,16 +71,15 @@ static void cut_light(struct cutter *c, struct mcr_light_lanes *l, uint32_t lane
     l->of = cut(c, lanes, sizeof *l->of);
 }
 
-/* The inputs of points on emitters that look-ups find. */
-static void cut_emitter_inputs(struct cutter *c, struct mcr_batch *b)
+static void cut_elsewhere(struct cutter *c, struct mcr_batch *b)
 {
-    struct mcr_light_lanes *l = &b->light;
-    double **array[] = {&l->u, &l->v, &l->width, &l->gu[0], &l->gu[1], &l->gu[2], &l->gv[0], &l->gv[1], &l->gv[2]};
-    l->input = cut(c, (size_t)b->core->channels * b->lanes, sizeof(double));
+    struct mcr_elsewhere *e = &b->elsewhere;
+    double **array[] = {&e->u, &e->v, &e->width, &e->gu[0], &e->gu[1], &e->gu[2], &e->gv[0], &e->gv[1], &e->gv[2]};
+    e->input = cut(c, (size_t)b->core->channels * b->lanes, sizeof(double));
     for (size_t i = 0; i < sizeof array / sizeof *array && b->core->charts.needs; i++)
         *array[i] = cut(c, b->lanes, sizeof(double));
     if (b->core->charts.needs)
-        l->at_primitive = cut(c, b->lanes, sizeof *l->at_primitive);
+        e->primitive = cut(c, b->lanes, sizeof *e->primitive);
 }
 
 static int has_textures(const struct mcr_core *core)
@@ -99,6 +104,29 @@ static void cut_textures(struct cutter *c, struct mcr_batch *b)
         t->front = cut(c, b->lanes, sizeof *t->front);
 }
 
+/* Arrays for mirror-like lobes. */
+static void cut_lobes(struct cutter *c, struct mcr_lobes *l, uint32_t lanes)
+{
+    double **array[] = {&l->number, &l->none, &l->x, &l->y, &l->z, &l->probability, &l->r, &l->g, &l->b};
+    for (size_t i = 0; i < sizeof array / sizeof *array; i++)
+        *array[i] = cut(c, lanes, sizeof(double));
+}
+
+/* Arrays for rays that cross surfaces. */
+static void cut_crossing(struct cutter *c, struct mcr_batch *b)
+{
+    struct mcr_crossing_lanes *l = &b->crossing_lanes;
+    double **array[] = {&l->px, &l->py, &l->pz, &l->nx, &l->ny, &l->nz, &l->ox, &l->oy, &l->oz, &l->side, &l->r, &l->g, &l->b, &l->t};
+    uint32_t **whole[] = {&l->material, &l->of, &l->active, &l->asked, &l->going};
+    for (size_t i = 0; i < sizeof array / sizeof *array; i++)
+        *array[i] = cut(c, b->lanes, sizeof(double));
+    for (size_t i = 0; i < sizeof whole / sizeof *whole; i++)
+        *whole[i] = cut(c, b->lanes, sizeof(uint32_t));
+    l->primitive = cut(c, b->lanes, sizeof *l->primitive);
+    l->hit = cut(c, b->lanes, sizeof *l->hit);
+    b->crossing = cut(c, b->lanes, sizeof *b->crossing);
+}
+
 static void cut_all(struct cutter *c, struct mcr_batch *b)
 {
     const struct mcr_core *core = b->core;
@@ -112,8 +140,8 @@ static void cut_all(struct cutter *c, struct mcr_batch *b)
         *of_rays[i] = cut(c, rays, sizeof(double));
     b->hit = cut(c, rays, sizeof *b->hit);
     b->source = cut(c, rays, sizeof *b->source);
-    cut_paths(c, &b->state, b->lanes);
-    cut_paths(c, &b->sorted, b->lanes);
+    cut_paths(c, &b->state, b->lanes, core);
+    cut_paths(c, &b->sorted, b->lanes, core);
     for (size_t i = 0; i < sizeof of_points / sizeof *of_points; i++)
         *of_points[i] = cut(c, b->lanes, sizeof(double));
     if (!core->surfaces.smooth && !(core->charts.needs & MCR_NEEDS_NORMALS)) {
@@ -140,6 +168,8 @@ static void cut_all(struct cutter *c, struct mcr_batch *b)
     b->slot_r = cut(c, (size_t)MCR_JOBS * MCR_JOB_SLOTS, sizeof(double));
     b->slot_g = cut(c, (size_t)MCR_JOBS * MCR_JOB_SLOTS, sizeof(double));
     b->slot_b = cut(c, (size_t)MCR_JOBS * MCR_JOB_SLOTS, sizeof(double));
+    if (core->scene->film.filter_edge)
+        b->slot_weight = cut(c, (size_t)MCR_JOBS * MCR_JOB_SLOTS, sizeof(double));
     if (core->scene->render.compat & MCR_COMPAT_CLAMP) {
         b->cap_r = cut(c, (size_t)MCR_JOBS * MCR_JOB_SLOTS, sizeof(double));
         b->cap_g = cut(c, (size_t)MCR_JOBS * MCR_JOB_SLOTS, sizeof(double));
@@ -150,10 +180,18 @@ static void cut_all(struct cutter *c, struct mcr_batch *b)
     b->camera_y = cut(c, rays, sizeof(double));
     if (core->combines)
         cut_light(c, &b->light, b->lanes);
-    if (core->combines && core->varying_emitters)
-        cut_emitter_inputs(c, b);
+    if ((core->combines || core->crosses) && core->varying_elsewhere)
+        cut_elsewhere(c, b);
     if (has_textures(core))
         cut_textures(c, b);
+    if (core->crosses)
+        cut_crossing(c, b);
+    if (core->interiors) {
+        at->here = cut(c, b->lanes, sizeof(double));
+        at->beyond = cut(c, b->lanes, sizeof(double));
+    }
+    if (core->lobes)
+        cut_lobes(c, &b->lobe, b->lanes);
     b->scratch = cut(c, core->scratch_bytes, 1);
 }
 

@@ -28,16 +28,21 @@
 #define MCR_JOBS 8u /* jobs that a batch may have in flight: more than one, so that the last paths of a job do not keep lanes empty */
 #define MCR_DIMENSION_LENS 2u
 #define MCR_DIMENSION_SAMPLER 8u
+#define MCR_DIMENSION_MATERIAL 28u /* of bounce 0: 8 + 20 */
 #define MCR_DIMENSION_ROULETTE 32u /* of bounce 0: 8 + 24 */
+
+#define MCR_INTERIORS 4u /* interiors that a path remembers being in: see crossing.h */
 
 /* A path's state, apart from where it is. */
 struct mcr_paths {
     double *r, *g, *b;      /* throughput */
     uint64_t *pixel_key, *path_key;
     uint32_t *index, *planned; /* the sample's number in its replicate, and how many are planned */
+    uint32_t *x, *y;        /* the pixel; NULL unless core->needs_pixel */
     uint32_t *bounce;       /* scattering events so far */
     uint32_t *slot;         /* where its radiance goes, in the ring of slots */
     double *width, *spread; /* its pixel's footprint: diameter, and how that grows with the way; NULL without surface coordinates */
+    uint32_t *inside[MCR_INTERIORS]; /* material + 1, in the order of entering, then 0; NULL where no material has an interior */
 };
 
 /* Surface properties by primitive, for gathering. A sphere has radius > 0 and its centre in c; all others are flat (n) but for ellipsoids. */
@@ -101,6 +106,7 @@ struct mcr_group {
     uint32_t material_count;        /* how many materials are in it */
     uint32_t first;                 /* one of them */
     int scatters, emits;
+    int spreads, lobes;             /* what scatters: directions with a density, mirror-like lobes */
     uint32_t layer_count;
     struct mcr_layer *layer;
     uint32_t channels;              /* of all layers */
@@ -108,6 +114,13 @@ struct mcr_group {
     double **table;                 /* channels arrays of scene->material_count values, where the group has several materials; else NULL */
     uint8_t *varies;                /* channels: whether the group's materials differ in it, or one has a texture there */
     int textured;                   /* one has */
+};
+
+/* What crossing.c has to know of a material. */
+struct mcr_interior {
+    int passes, bounds, absorbs;
+    double index, priority;
+    double attenuation[3];          /* 1 / render length */
 };
 
 /* What all threads share: immutable during a pass. */
@@ -125,15 +138,20 @@ struct mcr_core {
     uint32_t *group_of_material;
     uint32_t *textured_from;        /* by material: textured[textured_from[m]] .. textured[textured_from[m + 1] - 1]; NULL: nothing is textured */
     struct mcr_textured *textured;
-    int varying_emitters;           /* the inputs of some that emit are not the same everywhere */
+    int varying_elsewhere;          /* the inputs of some that emit or pass are not the same everywhere */
+    int interiors, crosses;         /* some material has an interior; or that, or lets light pass */
+    struct mcr_interior *interior;  /* by material, where something crosses */
+    uint32_t camera_inside[MCR_INTERIORS];
     uint32_t capacity;              /* rays in a batch */
     uint32_t channels;              /* most of any group */
     uint32_t dimensions;            /* of the sampler's techniques, one bounce */
     uint32_t continuing;            /* the sampler's technique that continues paths */
     int combines;                   /* it has more than one technique */
+    int lobes;                      /* some group has mirror-like lobes */
     int background;                 /* it is not black */
     uint64_t scratch_bytes;         /* for all nested operations of one thread */
     int needs_samples;              /* a number source other than `independent` is there */
+    int needs_pixel;                /* one of them asks for the pixel */
     struct mcr_host host;
     const struct mcr_render_options *options;
 };
@@ -148,6 +166,7 @@ struct mcr_surface_points {
     double *u, *v, *width;          /* coordinates, and the footprint's diameter in them */
     double *gu[3], *gv[3];
     double *tx, *ty, *tz;           /* tangents */
+    double *here, *beyond;          /* indices of refraction; NULL where no material has an interior */
 };
 
 /* A stretch of points of one group. */
@@ -162,6 +181,34 @@ struct mcr_job {
     uint64_t first_cell;
     uint32_t cells, paths, begun;
     int busy;
+};
+
+/* For src/core/lobes.c: the lobe chosen at each point, there only when a material has mirror-like lobes. */
+struct mcr_lobes {
+    double *number;
+    double *none;                  /* 1 where no lobe was chosen, 0 where one was: kept until the next hits are weighted */
+    double *x, *y, *z;             /* its direction, away from the surface */
+    double *probability;           /* of what was chosen, lobe or none */
+    double *r, *g, *b;             /* the radiance that it passes on */
+};
+
+/* For src/core/crossing.c: a ray on its way through surfaces, and arrays for those that are on their way together. There only where something crosses. */
+struct mcr_crossing {
+    uint32_t ray;                  /* the caller's */
+    uint32_t bounce, crossings, material;
+    uint32_t inside[MCR_INTERIORS];
+    int by_chance;
+    uint64_t key;
+    int64_t hit;
+    double o[3], d[3], t, far, travelled; /* the running stretch begins at o, `travelled` from where the ray began */
+    double q[3], n[3], side;
+    double factor[3], share[3];
+    double width, spread;          /* of the footprint, at where the ray began; unused without struct mcr_charts */
+};
+struct mcr_crossing_lanes {
+    double *px, *py, *pz, *nx, *ny, *nz, *ox, *oy, *oz, *side, *r, *g, *b, *t;
+    int64_t *primitive, *hit;
+    uint32_t *material, *of, *active, *asked, *going;
 };
 
 /* For src/core/light.c: arrays of one lane each, there only when the sampler has more than one technique. Lanes are those of points. */
@@ -180,10 +227,17 @@ struct mcr_light_lanes {
     /* points on emitters, compact, of one group */
     double *px, *py, *pz, *nx, *ny, *nz, *tx, *ty, *tz, *side, *lr, *lg, *lb;
     uint32_t *material, *of;
-    double *input;                  /* theirs, as lane_input; NULL where no emitter's vary */
-    /* their surface coordinates; NULL without struct mcr_charts */
-    int64_t *at_primitive;
-    double *u, *v, *width, *gu[3], *gv[3];
+};
+
+/*
+ * Inputs at points that are not those of the batch: on emitters that look-ups find, and where rays cross surfaces. Before it asks for them, whoever has
+ * such points (all of one group) fills in primitives and footprints; see mcr_elsewhere_inputs.
+ */
+struct mcr_elsewhere {
+    double *input;                  /* as lane_input; NULL where nothing varies at such points */
+    int64_t *primitive;             /* this and what follows: NULL without struct mcr_charts */
+    double *width;                  /* comes as a diameter in render space */
+    double *u, *v, *gu[3], *gv[3];
 };
 
 /* For looking up textures of stretches with several materials. */
@@ -221,12 +275,17 @@ struct mcr_batch {
     double *material_density;       /* that the material's own sampling has for the drawn directions; for roulette */
     double *alive;                  /* 1 or 0 */
     struct mcr_light_lanes light;
+    struct mcr_lobes lobe;
+    struct mcr_crossing *crossing;  /* capacity */
+    struct mcr_crossing_lanes crossing_lanes;
     double *lane_input;             /* channels * lanes: inputs that vary from lane to lane, of all ranges */
+    struct mcr_elsewhere elsewhere;
     struct mcr_texture_lanes textures; /* NULL without textures */
     const struct mcr_group *asked;  /* the group whose plugin runs: `channel` and `stride` are its */
     const double **channel;         /* the pointers handed to plugins */
     uint32_t *stride;
     double *slot_r, *slot_g, *slot_b;
+    double *slot_weight;            /* what a sample counts in its pixel; NULL where the film's filter gives all the same */
     double *cap_r, *cap_g, *cap_b;  /* by slot; NULL without compat clamp: see compat.h */
     struct mcr_job *job;
     char *scratch;                  /* scratch_bytes */
@@ -239,10 +298,11 @@ struct mcr_batch {
     const struct mcr_range *running; /* the range whose points a sampler works on, for the host's material services */
     /* for new camera paths */
     double *camera_x, *camera_y;
+    uint64_t replicate_key;         /* of the running pass */
     /* counts, summed at the end */
     uint64_t not_finite, not_finite_cell; /* of the pass */
     uint32_t not_finite_sample;
-    uint64_t camera_rays, bounce_rays, shadow_rays, scatterings;
+    uint64_t camera_rays, bounce_rays, shadow_rays, scatterings, crossings;
     double stage_seconds[MCR_STAGE_COUNT];
     void *memory;
 };
@@ -254,6 +314,7 @@ struct mcr_camera_lanes {
     const double *const *film;      /* 2 arrays */
     const double *const *lens;      /* 2 arrays, or NULL */
     double *ox, *oy, *oz, *dx, *dy, *dz;
+    double *weight;                 /* of the samples; NULL: the filter gives all the same */
 };
 
 /* New camera paths: the samples of a job in order, cell after cell (pass.h). */
@@ -287,6 +348,8 @@ struct mcr_stages {
     void (*emit)(struct mcr_batch *batch, uint32_t begin, uint32_t end);
     /* Adds the background to the slots of the rays that hit nothing. */
     void (*background)(struct mcr_batch *batch);
+    /* Lobes take the place of what was drawn. */
+    void (*mirror)(struct mcr_batch *batch, const struct mcr_range *range);
     /* Throughput times f cos / density, and roulette; fills alive. */
     void (*scatter)(struct mcr_batch *batch, const struct mcr_range *range);
     /* Makes rays of the living points and lists their lanes in `source`. */
@@ -307,8 +370,8 @@ void mcr_normals_tilt(struct mcr_batch *batch);
 void mcr_inputs_prepare(struct mcr_batch *batch);
 /* Inputs of the points from `begin` on of a group, for a plugin's operation; those of layers inside are in batch->channel then. */
 struct mcr_inputs mcr_group_inputs(struct mcr_batch *batch, const struct mcr_group *group, uint32_t begin);
-/* The same for points elsewhere, evaluated now, with the coordinates in batch->light. */
-struct mcr_inputs mcr_emitter_inputs(struct mcr_batch *batch, const struct mcr_group *group, const uint32_t *material, uint32_t n);
+/* The same for points elsewhere, evaluated now: see struct mcr_elsewhere. */
+struct mcr_inputs mcr_elsewhere_inputs(struct mcr_batch *batch, const struct mcr_group *group, const struct mcr_points *at, const uint32_t *material);
 /* Inputs of a layer of the group that was asked for last. */
 struct mcr_inputs mcr_layer_inputs(const struct mcr_batch *batch, const struct mcr_layer *layer);
 struct mcr_points mcr_batch_points(const struct mcr_batch *batch, uint32_t begin, uint32_t end);

@@ -5,11 +5,12 @@
 #include "base/elementary.h"
 #include "base/random.h"
 #include "core/stages.h"
+#include "scene/mitchell.h"
 #include <mcrender/sampler.h>
 
 #define BLOCK 64u
 
-/* Offsets from the pixel's centre, distributed like the filter, so that each sample counts for one pixel with weight 1. */
+/* Offsets from the pixel's centre, distributed like the filter, so that each sample counts for one pixel, with weight 1 where the filter has one sign. */
 static void filter_box(double radius, uint32_t n, const double *u, double *offset)
 {
     MCR_LANES
@@ -39,7 +40,27 @@ static void filter_gaussian(double sigma, double radius, uint32_t n, const doubl
     }
 }
 
-static void block_filter(const struct mcr_film_settings *film, uint32_t n, const double *u, const double *v, double *x, double *y)
+/*
+ * Both sides of a filter with negative parts: |2u - 1| chooses a cell of equal weight and a place in it, 2u - 1 the side. The sample's weight is
+ * multiplied by filter over density: nearly +-(the integral of |f|), but for the cells where f reaches 0.
+ */
+static void filter_mitchell(const struct mcr_film_settings *film, uint32_t n, const double *u, double *offset, double *weight)
+{
+    const double *edge = film->filter_edge;
+    const double b = film->filter_b, c = film->filter_c, half_radius = film->filter_radius / 2;
+    MCR_LANES
+    for (uint32_t i = 0; i < n; i++) {
+        double side = 2 * u[i] - 1, place = fabs(side) * MCR_MITCHELL_CELLS;
+        int32_t k = (int32_t)place;
+        k = k < (int32_t)MCR_MITCHELL_CELLS ? k : (int32_t)MCR_MITCHELL_CELLS - 1;
+        double low = edge[k], width = edge[k + 1] - low, x = low + width * (place - k);
+        offset[i] = (side < 0 ? -x : x) * half_radius;
+        weight[i] *= mcr_mitchell(b, c, x) * (width * (2.0 * MCR_MITCHELL_CELLS));
+    }
+}
+
+static void block_filter(const struct mcr_film_settings *film, uint32_t n, const double *u, const double *v, double *x, double *y,
+                         double *weight)
 {
     switch (film->filter) {
     case MCR_FILTER_TENT:
@@ -48,6 +69,12 @@ static void block_filter(const struct mcr_film_settings *film, uint32_t n, const
         break;
     case MCR_FILTER_GAUSSIAN:
         filter_gaussian(film->filter_sigma, film->filter_radius, n, u, v, x, y);
+        break;
+    case MCR_FILTER_MITCHELL:
+        for (uint32_t i = 0; i < n; i++)
+            weight[i] = 1;
+        filter_mitchell(film, n, u, x, weight);
+        filter_mitchell(film, n, v, y, weight);
         break;
     default:
         filter_box(film->filter_radius, n, u, x);
@@ -118,7 +145,7 @@ void MCR_ISA_NAME(mcr_stage_camera)(const struct mcr_scene *scene, const struct 
     _Alignas(64) double x[BLOCK], y[BLOCK], lens_x[BLOCK], lens_y[BLOCK];
     for (uint32_t first = 0; first < lanes->n; first += BLOCK) {
         uint32_t n = lanes->n - first < BLOCK ? lanes->n - first : BLOCK;
-        block_filter(film, n, lanes->film[0] + first, lanes->film[1] + first, x, y);
+        block_filter(film, n, lanes->film[0] + first, lanes->film[1] + first, x, y, lanes->weight ? lanes->weight + first : NULL);
         MCR_LANES
         for (uint32_t i = 0; i < n; i++) {
             x[i] = (lanes->x[first + i] + 0.5 + x[i] - half_width) * step;
@@ -156,6 +183,16 @@ static void identities(const struct mcr_film_settings *film, const struct mcr_be
     }
 }
 
+/* The pixels as whole numbers, for number sources that ask for them. */
+static void pixels(uint32_t n, const double *restrict x, const double *restrict y, uint32_t *restrict column, uint32_t *restrict row)
+{
+    MCR_LANES
+    for (uint32_t i = 0; i < n; i++) {
+        column[i] = (uint32_t)(int32_t)x[i];
+        row[i] = (uint32_t)(int32_t)y[i];
+    }
+}
+
 void MCR_ISA_NAME(mcr_stage_begin)(struct mcr_batch *batch, const struct mcr_begin *b)
 {
     const struct mcr_paths *paths = &batch->state;
@@ -179,4 +216,6 @@ void MCR_ISA_NAME(mcr_stage_begin)(struct mcr_batch *batch, const struct mcr_beg
     MCR_LANES
     for (uint32_t i = 0; i < n; i++)
         red[i] = green[i] = blue[i] = 1;
+    if (paths->x)
+        pixels(n, batch->camera_x, batch->camera_y, paths->x + to, paths->y + to);
 }

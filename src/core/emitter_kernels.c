@@ -80,6 +80,51 @@ void MCR_ISA_NAME(mcr_emitter_cross)(const struct mcr_emitters *all, uint32_t e,
         BY_FLAT_KIND(kind, cross_flat, all->k[e], lanes, flag)
 }
 
+#define CROSS_EACH_LOOP(load, shape, ...)                                     \
+    do {                                                                      \
+        ARRAYS(lanes);                                                        \
+        DIRECTIONS(lanes);                                                    \
+        MCR_LANES                                                             \
+        for (uint32_t i = 0; i < n; i++) {                                    \
+            const struct shape s = load(k + i, MCR_EMITTER_BLOCK);            \
+            flag[i] = __VA_ARGS__ ? 1.0 : 0.0;                                \
+        }                                                                     \
+    } while (0)
+
+MCR_INLINE int crossed_with_duals(uint32_t kind, const struct flat *f, const double *restrict k, double px, double py, double pz, double dx,
+                                  double dy, double dz)
+{
+    const double dual[6] = {k[MCR_K_DUAL0 * MCR_EMITTER_BLOCK],       k[(MCR_K_DUAL0 + 1) * MCR_EMITTER_BLOCK],
+                            k[(MCR_K_DUAL0 + 2) * MCR_EMITTER_BLOCK], k[MCR_K_DUAL1 * MCR_EMITTER_BLOCK],
+                            k[(MCR_K_DUAL1 + 1) * MCR_EMITTER_BLOCK], k[(MCR_K_DUAL1 + 2) * MCR_EMITTER_BLOCK]};
+    return flat_crossed(kind, f, dual, px, py, pz, dx, dy, dz);
+}
+
+MCR_INLINE void cross_flat_each(uint32_t kind, const struct mcr_emitter_lanes *lanes, const double *restrict k, double *restrict flag)
+{
+    CROSS_EACH_LOOP(flat_load, flat, crossed_with_duals(kind, &s, k + i, px[i], py[i], pz[i], wx[i], wy[i], wz[i]));
+}
+
+static void cross_ball_each(const struct mcr_emitter_lanes *lanes, const double *restrict k, double *restrict flag)
+{
+    CROSS_EACH_LOOP(ball_load, ball, ball_crossed(&s, px[i], py[i], pz[i], wx[i], wy[i], wz[i]));
+}
+
+static void cross_egg_each(const struct mcr_emitter_lanes *lanes, const double *restrict k, double *restrict flag)
+{
+    CROSS_EACH_LOOP(egg_load, egg, egg_crossed(&s, px[i], py[i], pz[i], wx[i], wy[i], wz[i]));
+}
+
+void MCR_ISA_NAME(mcr_emitter_cross_each)(uint32_t kind, const struct mcr_emitter_lanes *lanes, const double *k, double *flag)
+{
+    if (kind == MCR_EMITTER_SPHERE)
+        cross_ball_each(lanes, k, flag);
+    else if (kind == MCR_EMITTER_ELLIPSOID)
+        cross_egg_each(lanes, k, flag);
+    else
+        BY_FLAT_KIND(kind, cross_flat_each, lanes, k, flag)
+}
+
 /* ---- seen or not -------------------------------------------------------------------------------------------------- */
 
 void MCR_ISA_NAME(mcr_emitter_seen)(const struct mcr_emitters *all, uint32_t e, const struct mcr_emitter_lanes *lanes)

@@ -12,11 +12,12 @@
 /* Lanes of a block. */
 #define MCR_EMITTER_BLOCK 128u
 
-/* Lanes side by side: point; numbers u, v or direction; results. Arrays of the caller, or of a pack. */
+/* Lanes side by side: point; numbers u, v or direction; results. Arrays of the caller, or of a pack. Normals: NULL or for the tree. */
 struct mcr_emitter_lanes {
     uint32_t n;
     const double *px, *py, *pz, *u, *v;
     double *wx, *wy, *wz, *density, *distance;
+    const double *nx, *ny, *nz;
 };
 
 typedef double mcr_emitter_row[MCR_EMITTER_BLOCK];
@@ -57,25 +58,23 @@ struct mcr_solid_scratch {
 };
 
 /*
- * emitter_tree.c: more than MCR_EMITTERS_LISTED emitters are put into a tree and into its order, halved down to leaves of MCR_EMITTER_LEAF
- * at most; its depth is below MCR_EMITTER_DEPTH for any 32-bit count. Returns 0, or -1 when memory is short.
+ * emitter_tree.c: puts more than MCR_EMITTERS_FEW emitters, whose probabilities are set, into a tree and into its order. Returns 0, or -1
+ * when memory is short.
  */
-#define MCR_EMITTERS_LISTED 32u
-#define MCR_EMITTER_LEAF 4u
-#define MCR_EMITTER_DEPTH 32u
 int mcr_emitter_tree_build(struct mcr_emitters *all, struct mcr_arena *arena);
 
-/*
- * Walking the tree: inverse directions of the block, the lanes that each level's box is crossed by, and nodes still to visit with their
- * parents' lanes.
- */
-struct mcr_emitter_walk {
-    mcr_emitter_row ix, iy, iz, sum, wx, wy, wz, px, py, pz;
-    int64_t chosen[MCR_EMITTER_BLOCK];
-    int32_t list[(MCR_EMITTER_DEPTH + 1) * MCR_EMITTER_BLOCK];
-    struct {
-        uint32_t node, offset, count;
-    } stack[MCR_EMITTER_DEPTH + 1];
+/* Pairs of a lane and an emitter whose box the lane's ray crosses, and what they add to the lane's density. */
+struct mcr_emitter_pairs {
+    uint32_t count;
+    int32_t lane[MCR_EMITTER_BLOCK], list[MCR_EMITTER_BLOCK];
+    int64_t emitter[MCR_EMITTER_BLOCK];
+    mcr_emitter_row value, share, flag;
+};
+
+/* Lanes on their way down the tree: their nodes, and what is left of the number that chooses. */
+struct mcr_emitter_descent {
+    mcr_emitter_row number;
+    int32_t node[MCR_EMITTER_BLOCK], list[MCR_EMITTER_BLOCK];
 };
 
 struct mcr_emitter_scratch {
@@ -87,12 +86,16 @@ struct mcr_emitter_scratch {
     struct mcr_emitter_pack pack, second; /* second: those of the pack that fall back to area */
     struct mcr_emitter_pack wanted;       /* lanes that the caller wants, where it does not want all */
     mcr_emitter_row number;               /* theirs that choose the emitter */
+    mcr_emitter_row normal[3];            /* theirs */
     struct mcr_solid_scratch solid;
-    struct mcr_emitter_walk walk;
+    struct mcr_emitter_pairs pairs;
+    struct mcr_emitter_descent descent;
 };
 
 /* emitter_kernels.c. Flags (1 or 0) the lanes whose rays (p; w) cross emitter e and that see it. */
 void MCR_ISA_NAME(mcr_emitter_cross)(const struct mcr_emitters *all, uint32_t e, const struct mcr_emitter_lanes *lanes, double *flag);
+/* The same for lanes of one kind with the constants of an emitter each: constant j of lane i is k[j * MCR_EMITTER_BLOCK + i]. */
+void MCR_ISA_NAME(mcr_emitter_cross_each)(uint32_t kind, const struct mcr_emitter_lanes *lanes, const double *k, double *flag);
 /* Sets distance to 1 in the lanes that see emitter e, else to 0. */
 void MCR_ISA_NAME(mcr_emitter_seen)(const struct mcr_emitters *all, uint32_t e, const struct mcr_emitter_lanes *lanes);
 /*
@@ -107,6 +110,23 @@ void MCR_ISA_NAME(mcr_emitter_distance)(uint32_t kind, const struct mcr_emitter_
 /* Draws w, density and distance (0 where it was drawn by solid angle); density NOT_STEADY: is to be drawn by area. */
 void MCR_ISA_NAME(mcr_emitter_draw)(const struct mcr_emitters *all, uint32_t kind, uint32_t by, int alone,
                                     const struct mcr_emitter_lanes *lanes, const double *k, int varying, struct mcr_solid_scratch *scratch);
+
+/*
+ * emitter_choose.c, with the tree. Chooses an emitter for each lane: `chosen` (-1: none) and its probability `share`.
+ */
+void MCR_ISA_NAME(mcr_emitter_choose)(const struct mcr_emitters *all, const struct mcr_emitter_lanes *points, const double *number,
+                                      struct mcr_emitter_scratch *scratch);
+/* The probability with which emitter e is chosen in lane i, to the bit. */
+double MCR_ISA_NAME(mcr_emitter_chance)(const struct mcr_emitters *all, const struct mcr_emitter_lanes *points, uint32_t i, uint32_t e);
+/* Sums over the emitters that lanes see the probabilities that they are chosen. */
+void MCR_ISA_NAME(mcr_emitter_tree_mass)(const struct mcr_emitters *all, const struct mcr_emitter_lanes *points, double *mass);
+
+/*
+ * emitter_walk.c, with the tree. Adds to `sum` the densities of all emitters that the lanes' rays cross, times the probabilities that they
+ * are chosen, but of those in `chosen` (may be NULL).
+ */
+void MCR_ISA_NAME(mcr_emitter_walk)(const struct mcr_emitters *all, uint32_t by, const struct mcr_emitter_lanes *block, const int64_t *chosen,
+                                    double *sum, struct mcr_emitter_scratch *scratch);
 
 /* emitter_disk.c: these two for disks by solid angle. */
 void MCR_ISA_NAME(mcr_emitter_disk_density)(const struct mcr_emitters *all, const struct mcr_emitter_lanes *lanes, const double *k,

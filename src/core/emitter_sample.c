@@ -5,7 +5,7 @@
  * Every lane's results are the same in whatever block and order it is computed: a lane's sums run over the emitters in their order.
  */
 #include "core/emitter_flat.h"
-#include "core/emitter_lanes.h"
+#include "core/emitter_pack.h"
 
 #include <string.h>
 
@@ -14,6 +14,10 @@
 #define DENSITY MCR_ISA_NAME(mcr_emitter_density)
 #define DISTANCE MCR_ISA_NAME(mcr_emitter_distance)
 #define DRAW MCR_ISA_NAME(mcr_emitter_draw)
+#define CHOOSE MCR_ISA_NAME(mcr_emitter_choose)
+#define CHANCE MCR_ISA_NAME(mcr_emitter_chance)
+#define WALK MCR_ISA_NAME(mcr_emitter_walk)
+#define TREE_MASS MCR_ISA_NAME(mcr_emitter_tree_mass)
 
 /* Up to so many emitters the lanes of one emitter are drawn together, with its constants in registers; beyond, the lanes of one kind. */
 #define MOST_BY_EMITTER 8u
@@ -21,17 +25,6 @@
 #define MINIMUM(a, b) ((a) < (b) ? (a) : (b))
 
 /* ---- lists of lanes ------------------------------------------------------------------------------------------------ */
-
-/*
- * Repeats the first entry up to a whole vector, since a few odd lanes cost as much one by one. Returns the new length; there is room for
- * it.
- */
-static uint32_t pad_list(uint32_t count, int32_t *list)
-{
-    while (count % MCR_LANE_PAD)
-        list[count++] = list[0];
-    return count;
-}
 
 /* Most flags are 0: they are looked at eight at a time. */
 static uint32_t list_flagged(uint32_t n, const double *restrict flag, int32_t *restrict list)
@@ -54,46 +47,6 @@ static uint32_t list_flagged(uint32_t n, const double *restrict flag, int32_t *r
     return count;
 }
 
-static void gather(uint32_t count, const int32_t *restrict list, const double *restrict from, double *restrict to)
-{
-    MCR_LANES
-    for (uint32_t j = 0; j < count; j++)
-        to[j] = from[list[j]];
-}
-
-static void scatter(uint32_t count, const int32_t *restrict list, const double *restrict from, double *restrict to)
-{
-    for (uint32_t j = 0; j < count; j++)
-        to[list[j]] = from[j];
-}
-
-static struct mcr_emitter_lanes pack_lanes(struct mcr_emitter_pack *pack, uint32_t n)
-{
-    struct mcr_emitter_lanes lanes = {n,        pack->px, pack->py, pack->pz,      pack->u,       pack->v,
-                                      pack->wx, pack->wy, pack->wz, pack->density, pack->distance};
-    return lanes;
-}
-
-static void gather_points(const struct mcr_emitter_lanes *from, uint32_t count, const int32_t *list, struct mcr_emitter_pack *to)
-{
-    gather(count, list, from->px, to->px);
-    gather(count, list, from->py, to->py);
-    gather(count, list, from->pz, to->pz);
-}
-
-static void gather_numbers(const struct mcr_emitter_lanes *from, uint32_t count, const int32_t *list, struct mcr_emitter_pack *to)
-{
-    gather(count, list, from->u, to->u);
-    gather(count, list, from->v, to->v);
-}
-
-static void gather_directions(const struct mcr_emitter_lanes *from, uint32_t count, const int32_t *list, struct mcr_emitter_pack *to)
-{
-    gather(count, list, from->wx, to->wx);
-    gather(count, list, from->wy, to->wy);
-    gather(count, list, from->wz, to->wz);
-}
-
 static void scatter_drawn(uint32_t count, const int32_t *list, const struct mcr_emitter_pack *from, const struct mcr_emitter_lanes *to)
 {
     scatter(count, list, from->wx, to->wx);
@@ -103,22 +56,13 @@ static void scatter_drawn(uint32_t count, const int32_t *list, const struct mcr_
     scatter(count, list, from->distance, to->distance);
 }
 
-/* Each lane gets the constants of its emitter. */
-static void gather_constants(const struct mcr_emitters *all, const int64_t *restrict chosen, uint32_t count, const int32_t *restrict list,
-                             struct mcr_emitter_pack *restrict to)
-{
-    for (uint32_t j = 0; j < count; j++) {
-        const double *k = all->k[chosen[list[j]]];
-        for (uint32_t c = 0; c < MCR_K_SIZE; c++)
-            to->k[c][j] = k[c];
-    }
-}
-
 /* The points of a block: lanes base .. base+n-1 of the caller's arrays. */
 static struct mcr_emitter_lanes block_points(const struct mcr_points *at, uint32_t base)
 {
     struct mcr_emitter_lanes lanes = {.n = MINIMUM(at->n - base, MCR_EMITTER_BLOCK), .px = at->px + base, .py = at->py + base,
                                       .pz = at->pz + base};
+    if (at->nx)
+        lanes.nx = at->nx + base, lanes.ny = at->ny + base, lanes.nz = at->nz + base;
     return lanes;
 }
 
@@ -185,23 +129,6 @@ static void choose_few(const struct mcr_emitters *all, const struct mcr_emitter_
             running[i] = after;
         }
     }
-}
-
-/* Many emitters: binary search, all lanes in step. */
-static void choose_many(const struct mcr_emitters *all, uint32_t n, const double *restrict number, struct mcr_emitter_scratch *s)
-{
-    int64_t *restrict chosen = s->chosen;
-    const double *restrict from = all->from;
-    for (uint32_t i = 0; i < n; i++)
-        chosen[i] = 0;
-    for (uint32_t level = all->levels; level-- > 0;) {
-        int64_t step = (int64_t)1 << level;
-        MCR_LANES
-        for (uint32_t i = 0; i < n; i++)
-            chosen[i] += from[chosen[i] + step] <= number[i] ? step : 0;
-    }
-    for (uint32_t i = 0; i < n; i++)
-        s->share[i] = all->emitter[chosen[i]].probability;
 }
 
 /* ---- drawing ------------------------------------------------------------------------------------------------------- */
@@ -320,7 +247,7 @@ static void draw_block(const struct mcr_emitters *all, uint32_t by, int alone, c
         choose_few(all, block, number, s);
         invert_total(n, s->total);
     } else {
-        choose_many(all, n, number, s);
+        CHOOSE(all, block, number, s);
     }
     for (uint32_t i = 0; i < n; i++)
         block->wx[i] = block->wy[i] = block->wz[i] = block->density[i] = block->distance[i] = 0;
@@ -334,7 +261,6 @@ static void draw_block(const struct mcr_emitters *all, uint32_t by, int alone, c
 static void add_flagged(const struct mcr_emitters *all, uint32_t e, uint32_t by, const struct mcr_emitter_lanes *block, double *restrict sum,
                         struct mcr_emitter_scratch *s)
 {
-    const double probability = all->emitter[e].probability;
     uint32_t count = list_flagged(block->n, s->flag, s->list);
     if (count == 0)
         return;
@@ -344,8 +270,11 @@ static void add_flagged(const struct mcr_emitters *all, uint32_t e, uint32_t by,
     gather_points(block, padded, s->list, pack);
     gather_directions(block, padded, s->list, pack);
     DENSITY(all, all->emitter[e].kind, by, 0, &lanes, all->k[e], 0, &s->solid);
-    for (uint32_t j = 0; j < count; j++)
-        sum[s->list[j]] += probability * pack->density[j];
+    for (uint32_t j = 0; j < count; j++) {
+        int32_t i = s->list[j];
+        double probability = all->bounds ? CHANCE(all, block, (uint32_t)i, e) : all->emitter[e].probability;
+        sum[i] += probability * pack->density[j];
+    }
 }
 
 /* The same in the lanes whose rays cross it, but for those that chose it (chosen may be NULL). */
@@ -362,98 +291,12 @@ static void add_emitter(const struct mcr_emitters *all, uint32_t e, uint32_t by,
     add_flagged(all, e, by, block, sum, s);
 }
 
-static void invert(uint32_t n, const double *restrict from, double *restrict to)
-{
-    MCR_LANES
-    for (uint32_t i = 0; i < n; i++)
-        to[i] = 1 / from[i];
-}
-
-/*
- * Flags the listed lanes whose rays cross the node's box. What is not a number (a zero direction in the plane of a side) counts as crossed.
- */
-static void cross_box(const struct mcr_emitter_node *node, const struct mcr_emitter_lanes *block, uint32_t count,
-                      const int32_t *restrict list, const struct mcr_emitter_walk *walk, double *restrict flag)
-{
-    const double *restrict px = block->px, *restrict py = block->py, *restrict pz = block->pz;
-    const double *restrict ix = walk->ix, *restrict iy = walk->iy, *restrict iz = walk->iz;
-    const double lx = node->lo[0], ly = node->lo[1], lz = node->lo[2], hx = node->hi[0], hy = node->hi[1], hz = node->hi[2];
-    MCR_LANES
-    for (uint32_t j = 0; j < count; j++) {
-        int32_t i = list[j];
-        double x0 = (lx - px[i]) * ix[i], x1 = (hx - px[i]) * ix[i], y0 = (ly - py[i]) * iy[i], y1 = (hy - py[i]) * iy[i];
-        double z0 = (lz - pz[i]) * iz[i], z1 = (hz - pz[i]) * iz[i];
-        double nx = x0 < x1 ? x0 : x1, fx = x0 < x1 ? x1 : x0, ny = y0 < y1 ? y0 : y1, fy = y0 < y1 ? y1 : y0;
-        double nz = z0 < z1 ? z0 : z1, fz = z0 < z1 ? z1 : z0;
-        int apart = (nx > fy) | (nx > fz) | (ny > fx) | (ny > fz) | (nz > fx) | (nz > fy) | (fx < 0) | (fy < 0) | (fz < 0);
-        flag[j] = apart ? 0.0 : 1.0;
-    }
-}
-
-/* Adds the emitters of a leaf in the listed lanes. */
-static void add_leaf(const struct mcr_emitters *all, const struct mcr_emitter_node *node, uint32_t by,
-                     const struct mcr_emitter_lanes *block,
-                     const int64_t *chosen, double *restrict sum, uint32_t count, int32_t *list, struct mcr_emitter_scratch *s)
-{
-    struct mcr_emitter_walk *w = &s->walk;
-    struct mcr_emitter_lanes lanes = {.n = pad_list(count, list), .px = w->px, .py = w->py, .pz = w->pz, .wx = w->wx, .wy = w->wy,
-                                      .wz = w->wz};
-    const double *from[] = {block->px, block->py, block->pz, block->wx, block->wy, block->wz};
-    double *to[] = {w->px, w->py, w->pz, w->wx, w->wy, w->wz};
-    for (uint32_t r = 0; r < 6; r++)
-        gather(lanes.n, list, from[r], to[r]);
-    for (uint32_t j = 0; j < lanes.n; j++) {
-        w->sum[j] = 0;
-        w->chosen[j] = chosen ? chosen[list[j]] : -1;
-    }
-    for (uint32_t e = node->first; e < node->first + node->count; e++)
-        add_emitter(all, e, by, &lanes, w->chosen, w->sum, s);
-    for (uint32_t j = 0; j < count; j++)
-        sum[list[j]] += w->sum[j];
-}
-
-/* All emitters, through the tree: each node is asked by the lanes that crossed its parent. */
-static void add_tree(const struct mcr_emitters *all, uint32_t by, const struct mcr_emitter_lanes *block, const int64_t *chosen,
-                     double *restrict sum, struct mcr_emitter_scratch *s)
-{
-    struct mcr_emitter_walk *w = &s->walk;
-    uint32_t depth = 0;
-    invert(block->n, block->wx, w->ix);
-    invert(block->n, block->wy, w->iy);
-    invert(block->n, block->wz, w->iz);
-    for (uint32_t i = 0; i < block->n; i++)
-        w->list[i] = (int32_t)i;
-    w->stack[0].node = w->stack[0].offset = 0;
-    w->stack[0].count = block->n;
-    for (depth = 1; depth > 0;) {
-        uint32_t at = w->stack[--depth].node, offset = w->stack[depth].offset, asked = w->stack[depth].count, count = 0;
-        const struct mcr_emitter_node *node = &all->node[at];
-        int32_t *list = w->list + offset, *next = list + asked;
-        cross_box(node, block, asked, list, w, s->flag);
-        for (uint32_t j = 0; j < asked; j++) {
-            next[count] = list[j];
-            count += s->flag[j] != 0;
-        }
-        if (count == 0)
-            continue;
-        if (node->count > 0) {
-            add_leaf(all, node, by, block, chosen, sum, count, next, s);
-            continue;
-        }
-        for (int right = 1; right >= 0; right--) {
-            w->stack[depth].node = right ? node->right : at + 1;
-            w->stack[depth].offset = offset + asked;
-            w->stack[depth++].count = count;
-        }
-    }
-}
-
 /* Adds all emitters but the chosen ones. */
 static void add_all(const struct mcr_emitters *all, uint32_t by, const struct mcr_emitter_lanes *block, const int64_t *chosen, double *sum,
                     struct mcr_emitter_scratch *s)
 {
     if (all->node) {
-        add_tree(all, by, block, chosen, sum, s);
+        WALK(all, by, block, chosen, sum, s);
         return;
     }
     for (uint32_t e = 0; e < all->count; e++)
@@ -550,6 +393,12 @@ static uint32_t gather_wanted(const struct mcr_points *at, const double *const *
     gather_points(&all, padded, list, pack);
     gather_numbers(&all, padded, list, pack);
     gather(padded, list, number[0], s->number);
+    if (at->nx) {
+        gather(padded, list, at->nx, s->normal[0]);
+        gather(padded, list, at->ny, s->normal[1]);
+        gather(padded, list, at->nz, s->normal[2]);
+        block->nx = s->normal[0], block->ny = s->normal[1], block->nz = s->normal[2];
+    }
     return i;
 }
 
@@ -606,13 +455,16 @@ static void draw(const struct mcr_emitters *all, void *scratch, uint32_t by, con
 static void mass(const struct mcr_emitters *all, void *scratch, uint32_t by, const struct mcr_points *at, double *out)
 {
     struct mcr_emitter_scratch *s = scratch;
-    int whole = all->count <= MCR_EMITTERS_FEW;
     (void)by;
     for (uint32_t base = 0; base < at->n; base += MCR_EMITTER_BLOCK) {
         struct mcr_emitter_lanes block = block_points(at, base);
+        if (all->bounds) {
+            TREE_MASS(all, &block, out + base);
+            continue;
+        }
         sum_seen(all, &block, s);
         for (uint32_t i = 0; i < block.n; i++)
-            out[base + i] = whole ? (s->total[i] > 0 ? 1 : 0) : MINIMUM(s->total[i], 1);
+            out[base + i] = s->total[i] > 0 ? 1 : 0;
     }
 }
 
@@ -715,7 +567,7 @@ static void density_point(const struct mcr_emitters *all, void *scratch, uint32_
             int32_t e = points->emitter[base + i];
             s->chosen[i] = e;
             s->density[i] = 0;
-            s->share[i] = e < 0 ? 0 : all->count == 1 ? 1 : all->emitter[e].probability;
+            s->share[i] = e < 0 ? 0 : all->bounds ? CHANCE(all, &block, i, (uint32_t)e) : all->emitter[e].probability;
         }
         density_of_points(all, by, &block, s);
         if (shares(all)) {

@@ -16,6 +16,9 @@
 /* The height of points on a surface is a few roundings (u = 2^-53) of the coordinates it comes from; so far around it counts as unseen. */
 #define MARGIN (64 * MCR_ROUNDING)
 
+/* Where a product overflows; the sum of 2^32 such is finite. */
+#define MOST_POWER 1e290
+
 /* a * b - c * d, rounded once or twice: the products are formed exactly. */
 static double difference_of_products(double a, double b, double c, double d)
 {
@@ -205,29 +208,29 @@ static size_t count_candidates(const struct mcr_scene *scene)
     return count;
 }
 
-/* Probabilities in proportion to power, and their sums; powers relative to the largest, so that neither 1e30 nor 1e-30 is lost. */
+/* Probabilities in proportion to power; powers relative to the largest, so that neither 1e30 nor 1e-30 is lost. */
 static void set_probabilities(struct mcr_emitters *all, const struct mcr_scene *scene)
 {
     double largest = 0, sum = 0;
     for (uint32_t e = 0; e < all->count; e++) {
         struct mcr_emitter *emitter = &all->emitter[e];
         const double *radiance = scene->material[emitter->material].traits.radiance;
-        emitter->probability = mcr_luminance(radiance[0], radiance[1], radiance[2]) * emitter->area * (emitter->sides == BOTH_SIDES ?
-                                                                                                       2 : 1);
+        double luminance = mcr_luminance(radiance[0], radiance[1], radiance[2]);
+        emitter->probability = fmin(luminance * emitter->area * (emitter->sides == BOTH_SIDES ? 2 : 1), MOST_POWER);
         largest = fmax(largest, emitter->probability);
     }
-    for (uint32_t e = 0; e < all->count; e++)
-        sum += all->emitter[e].probability / largest;
-    double running = 0;
     for (uint32_t e = 0; e < all->count; e++) {
-        all->from[e] = running;
-        all->emitter[e].probability = all->emitter[e].probability / largest / sum;
-        running = fmin(running + all->emitter[e].probability, 1);
+        all->emitter[e].probability /= largest;
+        sum += all->emitter[e].probability;
     }
-    for (size_t e = all->count; e < (size_t)1 << all->levels; e++)
-        all->from[e] = 2; /* beyond every number */
-    for (uint32_t e = 0; e < all->count; e++) /* what was added is what is told */
-        all->emitter[e].probability = (e + 1 < all->count ? all->from[e + 1] : 1) - all->from[e];
+    all->power = MCR_PI * largest * sum;
+    for (uint32_t e = 0; e < all->count; e++)
+        all->emitter[e].probability /= sum;
+}
+
+double mcr_emitters_power(const struct mcr_emitters *emitters)
+{
+    return emitters->power;
 }
 
 size_t mcr_emitters_scratch(const struct mcr_emitters *emitters, uint32_t n)
@@ -240,18 +243,13 @@ struct mcr_emitters *mcr_emitters_create(struct mcr_arena *arena, const struct m
 {
     struct mcr_emitters *all = mcr_arena_alloc(arena, 1, sizeof *all);
     size_t candidates = count_candidates(scene);
-    uint32_t levels = 0;
-    while ((size_t)1 << levels < candidates)
-        levels++;
     if (!all)
         return NULL;
-    all->levels = levels;
     all->primitive_count = scene->primitive_count;
     all->emitter = mcr_arena_alloc(arena, candidates, sizeof *all->emitter);
     all->k = mcr_arena_alloc(arena, candidates, sizeof *all->k);
-    all->from = mcr_arena_alloc(arena, (size_t)1 << levels, sizeof *all->from);
     all->of_primitive = mcr_arena_alloc(arena, scene->primitive_count, sizeof *all->of_primitive);
-    if (!all->emitter || !all->k || !all->from || !all->of_primitive)
+    if (!all->emitter || !all->k || !all->of_primitive)
         return NULL;
     for (uint32_t i = 0; i < scene->shape_count; i++) {
         uint32_t sides = emitting_sides(&scene->material[scene->shape[i].material]);
@@ -263,13 +261,13 @@ struct mcr_emitters *mcr_emitters_create(struct mcr_arena *arena, const struct m
         if (sides)
             add_triangle(all, &scene->triangles, t, sides);
     }
-    if (all->count > MCR_EMITTERS_LISTED && mcr_emitter_tree_build(all, arena))
+    set_probabilities(all, scene);
+    if (all->count > MCR_EMITTERS_FEW && mcr_emitter_tree_build(all, arena))
         return NULL;
     for (uint32_t p = 0; p < scene->primitive_count; p++)
         all->of_primitive[p] = -1;
     for (uint32_t e = 0; e < all->count; e++)
         all->of_primitive[all->emitter[e].primitive] = (int32_t)e;
-    set_probabilities(all, scene);
     for (uint32_t i = 0; i < 128; i++) {
         double sine;
         mcr_sincos_turns(i / 128.0, &sine, &all->cosine[i]);

@@ -3,9 +3,12 @@
  * Emitters: the bounded shapes of a scene whose materials emit, and drawing directions or points toward them. These are the host's light
  * services (mcrender/sampler.h) over a batch of points. An emitter is one primitive; a box is six of them. Infinite planes are left out.
  *
- * An emitter is chosen with a probability in proportion to its power: luminance of its mean radiance times area times emitting sides. With
- * at most MCR_EMITTERS_FEW emitters only those count that can be seen from the point at all: a point behind a one-sided plane, or inside a
- * sphere that emits outside, does not see it. With more, the choice is the same everywhere, and at such a point nothing is drawn.
+ * With at most MCR_EMITTERS_FEW emitters, one is chosen with a probability in proportion to its power: luminance of its mean radiance times
+ * area times emitting sides. Only those count that can be seen from the point at all: a point behind a one-sided plane, or inside a sphere
+ * that emits outside, does not see it. With more, a tree of them is descended, at each node with probabilities in proportion to bounds of
+ * what its children bring to the point, from their power, distance, orientation, and that of the surface (its shading normal; points
+ * without normals are taken for points in space). At a leaf it may turn out that the emitter cannot be seen: then nothing is drawn. No
+ * emitter that sees the point has probability 0.
  */
 #ifndef MCR_CORE_EMITTERS_H
 #define MCR_CORE_EMITTERS_H
@@ -56,30 +59,35 @@ struct mcr_emitter {
     uint32_t material;
     uint32_t sides;      /* MCR_MATERIAL_EMITS_* */
     double area;         /* render space */
-    double probability;  /* power over the power of all */
+    double probability;  /* power over the power of all; by it few emitters are chosen */
 };
 
-/* A box of many emitters: two children, the left one right behind it, or count > 0 emitters from `first` on. */
-struct mcr_emitter_node {
-    double lo[3], hi[3];
-    uint32_t first, count, right;
-};
+struct mcr_emitter_node;
+struct mcr_emitter_bounds;
 
 struct mcr_emitters {
     uint32_t count;
     uint32_t primitive_count;
     struct mcr_emitter *emitter;
     double (*k)[MCR_K_SIZE];      /* count rows, indices above */
-    double *from;                 /* count padded to a power of two: emitter e takes numbers from[e] .. from[e+1] */
-    uint32_t levels;              /* of the search in `from`: 2^levels >= count */
     int32_t *of_primitive;        /* the emitter's number or -1 */
     uint32_t kinds;               /* bit set of those there are */
-    struct mcr_emitter_node *node; /* NULL with few emitters; else emitters are in the order of its leaves */
+    double power;                 /* see mcr_emitters_power */
+    /* The tree (emitter_tree.h) of more than MCR_EMITTERS_FEW emitters, which are in the order of its leaves; else NULL. */
+    struct mcr_emitter_node *node;
+    struct mcr_emitter_bounds *bounds;
+    uint64_t *place;              /* where in the tree each emitter is */
     double cosine[128];           /* cos(2 pi i / 128) */
 };
 
 /* NULL when memory is short. Lives in `arena`; immutable. */
 struct mcr_emitters *mcr_emitters_create(struct mcr_arena *arena, const struct mcr_scene *scene);
+
+/*
+ * What all emitters radiate together: luminance of their mean radiance times area times emitting sides times pi; W in render space, that is
+ * W in the world times the square of the scene's scale. 0 without emitters. An estimate, as the mean radiances are.
+ */
+double mcr_emitters_power(const struct mcr_emitters *emitters);
 
 /* Bytes of scratch, 64-byte aligned, that one call over n points needs. */
 size_t mcr_emitters_scratch(const struct mcr_emitters *emitters, uint32_t n);

@@ -7,7 +7,7 @@
 
 #include "plugin/values.h"
 
-#define SCATTERS (MCR_MATERIAL_REFLECTS | MCR_MATERIAL_TRANSMITS | MCR_MATERIAL_DELTA)
+#define SPREADS (MCR_MATERIAL_REFLECTS | MCR_MATERIAL_TRANSMITS)
 #define EMITS (MCR_MATERIAL_EMITS_FRONT | MCR_MATERIAL_EMITS_BACK)
 
 static const struct mcr_material_plugin *plugin_of(const struct mcr_scene_material *material)
@@ -74,7 +74,9 @@ static int group_start(struct mcr_arena *arena, struct mcr_group *group, const s
     group->instance = material->node->instance;
     group->node = material->node;
     group->first = m;
-    group->scatters = (material->traits.does & SCATTERS) && group->plugin->evaluate;
+    group->spreads = (material->traits.does & SPREADS) && group->plugin->evaluate;
+    group->lobes = (material->traits.does & MCR_MATERIAL_DELTA) != 0;
+    group->scatters = group->spreads || group->lobes;
     group->emits = emits(group, scene);
     group->layer = mcr_arena_alloc(arena, count_nodes(material->node), sizeof *group->layer);
     if (!group->layer)
@@ -192,6 +194,7 @@ int mcr_groups_init(struct mcr_core *core, struct mcr_arena *arena)
         if (g == core->group_count ? (core->group_count++, group_start(arena, group, scene, m)) : join(arena, group, scene, m))
             return -1;
         core->group_of_material[m] = g;
+        core->lobes |= group->lobes;
         group->material_count++;
         core->channels = group->channels > core->channels ? group->channels : core->channels;
     }
@@ -199,7 +202,8 @@ int mcr_groups_init(struct mcr_core *core, struct mcr_arena *arena)
         return -1;
     for (uint32_t g = 0; g < core->group_count; g++)
         for (uint32_t c = 0; c < core->group[g].channels; c++)
-            core->varying_emitters |= core->group[g].emits && core->group[g].varies[c];
+            core->varying_elsewhere |= core->group[g].varies[c] &&
+                                       (core->group[g].emits || scene->material[core->group[g].first].traits.does & MCR_MATERIAL_PASSES);
     return 0;
 }
 
@@ -223,7 +227,9 @@ struct mcr_points mcr_batch_points(const struct mcr_batch *batch, uint32_t begin
                                .side = at->side + begin,
                                .tx = at->tx ? at->tx + begin : NULL,
                                .ty = at->ty ? at->ty + begin : NULL,
-                               .tz = at->tz ? at->tz + begin : NULL};
+                               .tz = at->tz ? at->tz + begin : NULL,
+                               .here = at->here ? at->here + begin : NULL,
+                               .beyond = at->here ? at->beyond + begin : NULL};
 }
 
 static double norm(const double v[3])

@@ -342,6 +342,17 @@ int32_t mcr_group_density(struct mcr_batch *batch, const struct mcr_range *range
     return leave(batch, &was, status);
 }
 
+int32_t mcr_group_delta(struct mcr_batch *batch, const struct mcr_range *range, const double *const *number, const struct mcr_directions *out,
+                        double *probability, const struct mcr_colours *weight)
+{
+    const struct mcr_group *group = &batch->core->group[range->group];
+    struct mcr_points at = mcr_batch_points(batch, range->begin, range->end);
+    struct mcr_inputs inputs = mcr_group_inputs(batch, group, range->begin);
+    struct frame was = enter(batch, group->node, mcr_material_bytes(group, at.n));
+    int32_t status = group->plugin->delta(&batch->core->host, &batch->context, group->instance, &inputs, &at, number, out, probability, weight);
+    return leave(batch, &was, status);
+}
+
 /* Adds what the host emits for a layer of the running group, on the sides that do. */
 static void add_emission(const struct mcr_batch *batch, const struct mcr_layer *layer, const struct mcr_points *at, const struct mcr_colours *out)
 {
@@ -385,8 +396,17 @@ int32_t mcr_group_emission(struct mcr_batch *batch, const struct mcr_range *rang
 int32_t mcr_points_emission(struct mcr_batch *batch, const struct mcr_group *group, const struct mcr_points *at, const uint32_t *material,
                             const struct mcr_colours *out)
 {
-    struct mcr_inputs inputs = mcr_emitter_inputs(batch, group, material, at->n);
+    struct mcr_inputs inputs = mcr_elsewhere_inputs(batch, group, at, material);
     return layer_emission(batch, group->layer, at, &inputs, out);
+}
+
+int32_t mcr_points_passes(struct mcr_batch *batch, const struct mcr_group *group, const struct mcr_points *at, const uint32_t *material,
+                          const struct mcr_colours *out)
+{
+    struct mcr_inputs inputs = mcr_elsewhere_inputs(batch, group, at, material);
+    struct frame was = enter(batch, group->node, mcr_material_bytes(group, at->n));
+    int32_t status = group->plugin->passes(&batch->core->host, &batch->context, group->instance, &inputs, at, out);
+    return leave(batch, &was, status);
 }
 
 static int32_t source_fill(struct mcr_batch *batch, const struct mcr_node *node, const struct mcr_samples *samples, uint32_t first, uint32_t count,
@@ -408,7 +428,10 @@ int32_t mcr_numbers(struct mcr_batch *batch, const struct mcr_paths *paths, uint
                                   .path_key = paths->path_key + begin,
                                   .index = paths->index + begin,
                                   .planned = paths->planned + begin,
-                                  .bounce = paths->bounce + begin};
+                                  .bounce = paths->bounce + begin,
+                                  .x = paths->x ? paths->x + begin : NULL,
+                                  .y = paths->y ? paths->y + begin : NULL,
+                                  .replicate_key = batch->replicate_key};
     uint32_t done = 0;
     for (uint32_t s = 0; s < sampler->source_count && done < count; s++) {
         const struct mcr_node *node = sampler->source[s];

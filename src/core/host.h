@@ -28,10 +28,15 @@ int32_t mcr_group_evaluate(struct mcr_batch *batch, const struct mcr_range *rang
                            const struct mcr_colours *out);
 /* The density of the material's own sampling; 0 if it has none. */
 int32_t mcr_group_density(struct mcr_batch *batch, const struct mcr_range *range, const struct mcr_directions *toward, double *density);
+/* Chooses a mirror-like lobe, or none: see struct mcr_material_plugin. */
+int32_t mcr_group_delta(struct mcr_batch *batch, const struct mcr_range *range, const double *const *number, const struct mcr_directions *out,
+                        double *probability, const struct mcr_colours *weight);
 int32_t mcr_group_emission(struct mcr_batch *batch, const struct mcr_range *range, const struct mcr_colours *out);
 /* The same for points elsewhere, all of one group; material[0 .. n-1] are theirs. */
 int32_t mcr_points_emission(struct mcr_batch *batch, const struct mcr_group *group, const struct mcr_points *at, const uint32_t *material,
                             const struct mcr_colours *out);
+int32_t mcr_points_passes(struct mcr_batch *batch, const struct mcr_group *group, const struct mcr_points *at, const uint32_t *material,
+                          const struct mcr_colours *out);
 uint64_t mcr_material_bytes(const struct mcr_group *group, uint32_t n);
 
 /* `count` numbers from dimension `first` on for the states begin .. end-1, through the chain of sources. */

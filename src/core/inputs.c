@@ -126,10 +126,27 @@ struct mcr_inputs mcr_group_inputs(struct mcr_batch *batch, const struct mcr_gro
     return hand_over(batch, group, batch->lane_input + begin);
 }
 
-struct mcr_inputs mcr_emitter_inputs(struct mcr_batch *batch, const struct mcr_group *group, const uint32_t *material, uint32_t n)
+struct mcr_inputs mcr_elsewhere_inputs(struct mcr_batch *batch, const struct mcr_group *group, const struct mcr_points *at, const uint32_t *material)
 {
-    const struct mcr_light_lanes *l = &batch->light;
-    if (batch->core->varying_emitters)
-        evaluate(batch, group, &(struct points){n, material, l->u, l->v, l->width, l->input, batch->lanes});
-    return hand_over(batch, group, l->input);
+    const struct mcr_elsewhere *e = &batch->elsewhere;
+    if (group->textured)
+        batch->core->stages->chart(batch->core, &(struct mcr_chart_lanes){.n = at->n,
+                                                                          .primitive = e->primitive,
+                                                                          .px = at->px,
+                                                                          .py = at->py,
+                                                                          .pz = at->pz,
+                                                                          .gx = at->gx,
+                                                                          .gy = at->gy,
+                                                                          .gz = at->gz,
+                                                                          .ox = at->ox,
+                                                                          .oy = at->oy,
+                                                                          .oz = at->oz,
+                                                                          .u = e->u,
+                                                                          .v = e->v,
+                                                                          .width = e->width,
+                                                                          .gu = {e->gu[0], e->gu[1], e->gu[2]},
+                                                                          .gv = {e->gv[0], e->gv[1], e->gv[2]}});
+    if (e->input)
+        evaluate(batch, group, &(struct points){at->n, material, e->u, e->v, e->width, e->input, batch->lanes});
+    return hand_over(batch, group, e->input);
 }

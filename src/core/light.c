@@ -3,7 +3,9 @@
 
 #include <math.h>
 
+#include "core/crossing.h"
 #include "core/host.h"
+#include "core/lobes.h"
 
 static double heuristic(const struct mcr_core *core, double density)
 {
@@ -58,38 +60,12 @@ static struct mcr_emitter_points emitter_points(const struct mcr_light_lanes *l,
 
 /* ---- What a look-up sees --------------------------------------------------------------------------------------- */
 
-/* The front normal of a primitive at a point on it. */
-static void front_normal(const struct mcr_core *core, int64_t primitive, const double q[3], double n[3])
-{
-    const struct mcr_surfaces *s = &core->surfaces;
-    if (s->quadric && s->quadric[primitive] != UINT32_MAX) {
-        const double *m = core->accel->shape[s->quadric[primitive]].k;
-        double local[3];
-        for (int i = 0; i < 3; i++)
-            local[i] = m[3 + 3 * i] * (q[0] - m[0]) + m[4 + 3 * i] * (q[1] - m[1]) + m[5 + 3 * i] * (q[2] - m[2]);
-        for (int j = 0; j < 3; j++)
-            n[j] = m[3 + j] * local[0] + m[6 + j] * local[1] + m[9 + j] * local[2];
-    } else if (s->radius[primitive] > 0) {
-        n[0] = q[0] - s->cx[primitive];
-        n[1] = q[1] - s->cy[primitive];
-        n[2] = q[2] - s->cz[primitive];
-    } else {
-        n[0] = s->nx[primitive];
-        n[1] = s->ny[primitive];
-        n[2] = s->nz[primitive];
-        return;
-    }
-    double length = sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
-    for (int j = 0; j < 3; j++)
-        n[j] /= length;
-}
-
 /* Lane k's point on an emitter becomes compact point c. */
 static void emitter_surface(struct mcr_batch *batch, uint32_t k, uint32_t c)
 {
     struct mcr_light_lanes *l = &batch->light;
     double q[3] = {l->qx[k], l->qy[k], l->qz[k]}, n[3];
-    front_normal(batch->core, l->primitive[k], q, n);
+    mcr_surface_project(batch->core, l->primitive[k], q, n);
     double side = n[0] * l->wx[k] + n[1] * l->wy[k] + n[2] * l->wz[k] < 0 ? 1.0 : -1.0;
     l->px[c] = q[0];
     l->py[c] = q[1];
@@ -103,32 +79,10 @@ static void emitter_surface(struct mcr_batch *batch, uint32_t k, uint32_t c)
     l->side[c] = side;
     l->material[c] = batch->core->surfaces.material[l->primitive[k]];
     l->of[c] = k;
-    if (l->u) {
-        l->at_primitive[c] = l->primitive[k];
-        l->width[c] = batch->sorted.width[k] + batch->sorted.spread[k] * l->distance[k];
+    if (batch->elsewhere.primitive) {
+        batch->elsewhere.primitive[c] = l->primitive[k];
+        batch->elsewhere.width[c] = batch->sorted.width[k] + batch->sorted.spread[k] * l->distance[k];
     }
-}
-
-/* Surface coordinates of the compact points, for textures. */
-static void emitter_coordinates(struct mcr_batch *batch, uint32_t n)
-{
-    const struct mcr_light_lanes *l = &batch->light;
-    batch->core->stages->chart(batch->core, &(struct mcr_chart_lanes){.n = n,
-                                                                      .primitive = l->at_primitive,
-                                                                      .px = l->px,
-                                                                      .py = l->py,
-                                                                      .pz = l->pz,
-                                                                      .gx = l->nx,
-                                                                      .gy = l->ny,
-                                                                      .gz = l->nz,
-                                                                      .ox = l->tx,
-                                                                      .oy = l->ty,
-                                                                      .oz = l->tz,
-                                                                      .u = l->u,
-                                                                      .v = l->v,
-                                                                      .width = l->width,
-                                                                      .gu = {l->gu[0], l->gu[1], l->gu[2]},
-                                                                      .gv = {l->gv[0], l->gv[1], l->gv[2]}});
 }
 
 /* Adds the weighted light that the lanes of one group see: throughput * f * Le * h(p) / (h(p) + others) / p. */
@@ -139,8 +93,6 @@ static int32_t add_group(struct mcr_batch *batch, uint32_t g, uint32_t count)
     struct mcr_points at = {.size = sizeof at, .n = count, .px = l->px, .py = l->py, .pz = l->pz, .nx = l->nx, .ny = l->ny, .nz = l->nz, .gx = l->nx,
                             .gy = l->ny, .gz = l->nz, .ox = l->tx, .oy = l->ty, .oz = l->tz, .side = l->side};
     struct mcr_colours out = {sizeof out, count, l->lr, l->lg, l->lb};
-    if (l->u && batch->core->group[g].textured)
-        emitter_coordinates(batch, count);
     int32_t status = mcr_points_emission(batch, &batch->core->group[g], &at, l->material, &out);
     for (uint32_t c = 0; c < count && !status; c++) {
         uint32_t k = l->of[c], slot = paths->slot[k];
@@ -199,7 +151,7 @@ static void leave_point(const struct mcr_batch *batch, uint32_t k, double o[3])
 }
 
 /* The emitter technique's points that nothing hides. A ray ends as far before the emitter's surface as it starts off its own. */
-static void keep_visible(struct mcr_batch *batch, const struct mcr_range *range)
+static int32_t keep_visible(struct mcr_batch *batch, const struct mcr_range *range)
 {
     struct mcr_light_lanes *l = &batch->light;
     const struct mcr_core *core = batch->core;
@@ -211,7 +163,7 @@ static void keep_visible(struct mcr_batch *batch, const struct mcr_range *range)
         uint32_t primitive = core->emitters->emitter[l->emitter[k]].primitive;
         double o[3], n[3], q[3] = {l->qx[k], l->qy[k], l->qz[k]}, d[3], square = 0, reach = core->surfaces.reach[primitive];
         leave_point(batch, k, o);
-        front_normal(core, primitive, q, n);
+        mcr_surface_project(core, primitive, q, n);
         for (int j = 0; j < 3; j++)
             reach = fabs(q[j]) > reach ? fabs(q[j]) : reach;
         reach = batch->at.reach[k] > reach ? batch->at.reach[k] : reach;
@@ -231,15 +183,17 @@ static void keep_visible(struct mcr_batch *batch, const struct mcr_range *range)
         l->lane[rays++] = k;
     }
     struct mcr_rays all = {rays, l->ox, l->oy, l->oz, l->dx, l->dy, l->dz};
-    core->trace->visible(core->accel, &all, l->far, l->seen);
-    for (uint32_t i = 0; i < rays; i++)
+    struct mcr_look look = {.rays = all, .lane = l->lane, .far = l->far, .seen = l->seen, .r = l->fr, .g = l->fg, .b = l->fb};
+    int32_t status = mcr_look_visible(batch, &look);
+    for (uint32_t i = 0; i < rays && !status; i++)
         if (l->seen[i] > 0)
             l->primitive[l->lane[i]] = core->emitters->emitter[l->emitter[l->lane[i]]].primitive;
     batch->shadow_rays += rays;
+    return status;
 }
 
 /* The direction technique's first hits; a miss sees the background. */
-static void trace_directions(struct mcr_batch *batch, const struct mcr_range *range)
+static int32_t trace_directions(struct mcr_batch *batch, const struct mcr_range *range, uint32_t technique)
 {
     struct mcr_light_lanes *l = &batch->light;
     const struct mcr_core *core = batch->core;
@@ -264,8 +218,9 @@ static void trace_directions(struct mcr_batch *batch, const struct mcr_range *ra
         l->lane[rays++] = k;
     }
     struct mcr_rays all = {rays, l->ox, l->oy, l->oz, l->dx, l->dy, l->dz};
-    core->trace->closest(core->accel, &all, l->far, l->hit);
-    for (uint32_t i = 0; i < rays; i++) {
+    struct mcr_look look = {.rays = all, .lane = l->lane, .salt = technique + 1, .far = l->far, .hit = l->hit, .r = l->fr, .g = l->fg, .b = l->fb};
+    int32_t status = mcr_look_closest(batch, &look);
+    for (uint32_t i = 0; i < rays && !status; i++) {
         uint32_t k = l->lane[i];
         l->primitive[k] = l->hit[i] >= 0 ? l->hit[i] : -2; /* -2: the background */
         l->emitter[k] = l->hit[i] >= 0 ? core->emitters->of_primitive[l->hit[i]] : -1;
@@ -275,6 +230,7 @@ static void trace_directions(struct mcr_batch *batch, const struct mcr_range *ra
         l->qz[k] = l->oz[i] + l->far[i] * l->dz[i];
     }
     batch->shadow_rays += rays;
+    return status;
 }
 
 static void add_background(struct mcr_batch *batch, const struct mcr_range *range)
@@ -310,11 +266,11 @@ static int32_t lookup(struct mcr_batch *batch, const struct mcr_range *range, co
         status = mcr_group_evaluate(batch, range, &toward, &f);
     if (status)
         return status;
-    if (by_point)
-        keep_visible(batch, range);
-    else
-        trace_directions(batch, range);
-    status = others(batch, technique, at, b, &toward, &points, l->sum);
+    if (batch->core->group[range->group].lobes)
+        mcr_lobes_share(batch, range, &f);
+    status = by_point ? keep_visible(batch, range) : trace_directions(batch, range, technique);
+    if (!status)
+        status = others(batch, technique, at, b, &toward, &points, l->sum);
     if (status)
         return status;
     add_background(batch, range);
@@ -374,10 +330,11 @@ int32_t mcr_light_weights(struct mcr_batch *batch)
         }
         batch->running = NULL;
     }
-    /* Camera rays come from beyond the points. */
+    /* Camera rays come from beyond the points; what is found along a mirror-like lobe no technique could have drawn. */
     for (uint32_t j = 0; j < batch->rays; j++) {
         uint32_t k = batch->source[j];
-        l->weight[j] = k < batch->points ? l->own[k] / (l->own[k] + l->sum[k]) : 1;
+        int drawn = k < batch->points && !(core->lobes && batch->lobe.none[k] == 0);
+        l->weight[j] = drawn ? l->own[k] / (l->own[k] + l->sum[k]) : 1;
     }
     return MCR_OK;
 }

@@ -7,8 +7,10 @@
 #include "base/cpu.h"
 #include "base/random.h"
 #include "core/compat.h"
+#include "core/crossing.h"
 #include "core/host.h"
 #include "core/light.h"
+#include "core/lobes.h"
 #include "core/pass.h"
 
 /* Runs a statement and books its time on a stage, with --profile. */
@@ -98,6 +100,17 @@ static void finish_cell(const struct mcr_batch *batch, const struct mcr_pass *pa
         mcr_cell_channel_moments(r, g, b, pass->cell_samples, &pass->cell[number], &pass->channels[number]);
 }
 
+/* The samples' weights by the film's filter, which may be negative: applied at the end, where they disturb no throughput. */
+static void weigh(struct mcr_batch *batch, size_t first, uint32_t n)
+{
+    const double *restrict weight = batch->slot_weight;
+    for (size_t i = first; i < first + n; i++) {
+        batch->slot_r[i] *= weight[i];
+        batch->slot_g[i] *= weight[i];
+        batch->slot_b[i] *= weight[i];
+    }
+}
+
 /* Sums up the jobs whose paths have all begun and ended. */
 static void finish_jobs(struct mcr_batch *batch, struct mcr_pass *pass)
 {
@@ -107,6 +120,8 @@ static void finish_jobs(struct mcr_batch *batch, struct mcr_pass *pass)
             continue;
         if (batch->cap_r)
             mcr_compat_clamp(batch, (size_t)i * MCR_JOB_SLOTS, job->paths);
+        if (batch->slot_weight)
+            weigh(batch, (size_t)i * MCR_JOB_SLOTS, job->paths);
         for (uint32_t c = 0; c < job->cells; c++) {
             size_t slot = (size_t)i * MCR_JOB_SLOTS + (size_t)c * pass->cell_samples;
             uint64_t number = job->first_cell + c;
@@ -142,6 +157,7 @@ static int32_t camera(struct mcr_batch *batch, struct mcr_pass *pass)
                                   .first = (uint32_t)pass->first,
                                   .planned = pass->planned,
                                   .replicate_key = pass->replicate_key};
+        double *weight = batch->slot_weight ? batch->slot_weight + begin.slot : NULL;
         core->stages->begin(batch, &begin);
         job->begun += n;
         int32_t status = mcr_numbers(batch, paths, to, to + n, 0, 2, batch->number);
@@ -159,10 +175,13 @@ static int32_t camera(struct mcr_batch *batch, struct mcr_pass *pass)
                                          .oz = batch->roz + batch->rays,
                                          .dx = batch->rdx + batch->rays,
                                          .dy = batch->rdy + batch->rays,
-                                         .dz = batch->rdz + batch->rays};
+                                         .dz = batch->rdz + batch->rays,
+                                         .weight = weight};
         core->stages->camera(core->scene, &lanes);
         if (core->charts.needs)
             core->stages->cones(batch, to, batch->rays, n);
+        if (core->interiors)
+            mcr_crossing_begin(batch, to, n);
         batch->rays += n;
         batch->states = (to + n + MCR_LANE_PAD - 1) / MCR_LANE_PAD * MCR_LANE_PAD;
         batch->camera_rays += n;
@@ -206,15 +225,16 @@ static int32_t roulette(struct mcr_batch *batch, const struct mcr_range *range)
     const uint32_t b = part.begin;
     struct mcr_directions toward = {sizeof toward, part.end - b, batch->wx + b, batch->wy + b, batch->wz + b};
     double *number = batch->roulette + b;
-    int32_t status;
-    TIMED(MCR_STAGE_MATERIAL, status = mcr_group_density(batch, &part, &toward, batch->material_density + b));
+    int32_t status = MCR_OK;
+    if (batch->core->group[range->group].spreads)
+        TIMED(MCR_STAGE_MATERIAL, status = mcr_group_density(batch, &part, &toward, batch->material_density + b));
     if (!status)
         TIMED(MCR_STAGE_NUMBERS, status = mcr_numbers(batch, &batch->sorted, b, part.end, MCR_DIMENSION_ROULETTE, 1, &number));
     return status;
 }
 
-/* The points of one group: directions, f cos, throughput. */
-static int32_t scatter_range(struct mcr_batch *batch, const struct mcr_range *range)
+/* Directions by the sampler, look-ups for light, f cos: for the points of one group. */
+static int32_t draw_range(struct mcr_batch *batch, const struct mcr_range *range)
 {
     const struct mcr_core *core = batch->core;
     const uint32_t b = range->begin, n = range->end - b;
@@ -225,11 +245,11 @@ static int32_t scatter_range(struct mcr_batch *batch, const struct mcr_range *ra
     double *number[MCR_NUMBERS_MAX];
     int32_t status;
     uint32_t first = 0;
+    at.wanted = core->group[range->group].lobes ? batch->lobe.none + b : NULL;
     for (uint32_t k = 0; k < MCR_NUMBERS_MAX; k++)
         number[k] = batch->number[k] + b;
     for (uint32_t t = 0; t < core->continuing; t++)
         first += node->technique[t].dimensions;
-    batch->running = range;
     batch->kept_at = NULL;
     TIMED(MCR_STAGE_NUMBERS, status = mcr_numbers(batch, &batch->sorted, b, range->end, MCR_DIMENSION_SAMPLER, core->dimensions, number));
     if (!status)
@@ -239,13 +259,33 @@ static int32_t scatter_range(struct mcr_batch *batch, const struct mcr_range *ra
         TIMED(MCR_STAGE_LIGHT, status = mcr_light_lookups(batch, range, &at, number));
     if (!status)
         TIMED(MCR_STAGE_MATERIAL, status = mcr_group_evaluate(batch, range, &toward, &out));
+    return status;
+}
+
+/* The points of one group: directions, f cos, throughput. */
+static int32_t scatter_range(struct mcr_batch *batch, const struct mcr_range *range)
+{
+    const struct mcr_core *core = batch->core;
+    const struct mcr_group *group = &core->group[range->group];
+    int32_t status = MCR_OK;
+    batch->running = range;
+    if (group->lobes)
+        TIMED(MCR_STAGE_MATERIAL, status = mcr_lobes_choose(batch, range));
+    else if (core->lobes)
+        mcr_lobes_none(batch, range);
+    if (!status && group->spreads)
+        status = draw_range(batch, range);
     if (!status && range->roulette < range->end)
         status = roulette(batch, range);
     batch->running = NULL;
     if (status)
         return status;
+    if (group->lobes)
+        TIMED(MCR_STAGE_SCATTER, core->stages->mirror(batch, range));
     TIMED(MCR_STAGE_SCATTER, core->stages->scatter(batch, range));
-    batch->scatterings += n;
+    if (core->interiors)
+        mcr_crossing_scattered(batch, range);
+    batch->scatterings += range->end - range->begin;
     return MCR_OK;
 }
 
@@ -253,15 +293,15 @@ static int32_t scatter_range(struct mcr_batch *batch, const struct mcr_range *ra
 static int32_t step(struct mcr_batch *batch, struct mcr_pass *pass)
 {
     struct mcr_core *core = batch->core;
-    int32_t status;
+    int32_t status = MCR_OK;
     if (core->scene->render.compat & (MCR_COMPAT_BACKGROUND_AT_LIMIT | MCR_COMPAT_FLOOR_SQRT))
         mcr_compat_end_rays(batch);
     struct mcr_rays rays = {batch->rays, batch->rox, batch->roy, batch->roz, batch->rdx, batch->rdy, batch->rdz};
     TIMED(MCR_STAGE_HIT, core->trace->closest(core->accel, &rays, batch->t, batch->hit));
-    if (core->combines)
+    if (core->crosses)
+        TIMED(MCR_STAGE_HIT, status = mcr_crossing_paths(batch));
+    if (!status && core->combines)
         TIMED(MCR_STAGE_LIGHT, status = mcr_light_weights(batch));
-    else
-        status = MCR_OK;
     if (status)
         return status;
     TIMED(MCR_STAGE_SORT, core->stages->sort(batch));
@@ -273,6 +313,8 @@ static int32_t step(struct mcr_batch *batch, struct mcr_pass *pass)
     if (core->charts.needs & MCR_NEEDS_NORMALS)
         TIMED(MCR_STAGE_SURFACE, mcr_normals_tilt(batch));
     TIMED(MCR_STAGE_MATERIAL, mcr_inputs_prepare(batch));
+    if (core->interiors)
+        mcr_crossing_points(batch);
     if (batch->cap_r)
         mcr_compat_lower_caps(batch);
     TIMED(MCR_STAGE_EMISSION, status = emission(batch));
@@ -288,6 +330,7 @@ static int32_t step(struct mcr_batch *batch, struct mcr_pass *pass)
 
 void mcr_batch_run(struct mcr_batch *batch, struct mcr_pass *pass, uint32_t thread)
 {
+    batch->replicate_key = pass->replicate_key;
     while (!atomic_load_explicit(&pass->failed, memory_order_relaxed)) {
         int32_t status;
         TIMED(MCR_STAGE_CAMERA, status = camera(batch, pass));

@@ -7,6 +7,7 @@
 #include "base/cpu.h"
 #include "base/random.h"
 #include "base/threads.h"
+#include "core/crossing.h"
 #include "core/groups.h"
 #include "core/host.h"
 #include "core/pass.h"
@@ -75,6 +76,7 @@ static int prepare(struct render *render, const struct mcr_scene *scene, const s
     core->lights = lights_of(options->isa);
     core->capacity = scene->render.batch ? (scene->render.batch + MCR_LANE_PAD - 1) / MCR_LANE_PAD * MCR_LANE_PAD : DEFAULT_BATCH;
     core->needs_samples = scene->sampler->source_count > 0;
+    core->needs_pixel = (scene->sampler->needs & MCR_NEEDS_PIXEL) != 0;
     core->background = background[0] > 0 || background[1] > 0 || background[2] > 0;
     for (uint32_t t = 0; t < directions->technique_count; t++) {
         core->dimensions += directions->technique[t].dimensions;
@@ -83,8 +85,10 @@ static int prepare(struct render *render, const struct mcr_scene *scene, const s
     }
     core->combines = directions->technique_count > 1;
     core->emitters = mcr_emitters_create(render->arena, scene);
-    if (!core->emitters || mcr_groups_init(core, render->arena) || mcr_surfaces_init(core, render->arena) || mcr_charts_init(core, render->arena))
+    if (!core->emitters || mcr_groups_init(core, render->arena) || mcr_surfaces_init(core, render->arena) || mcr_charts_init(core, render->arena) ||
+        mcr_crossing_init(core, render->arena))
         return -1;
+    mcr_crossing_camera(core);
     mcr_host_init(core);
     core->scratch_bytes = mcr_host_scratch(core);
     return 0;
@@ -119,6 +123,7 @@ static void collect(struct render *render, struct mcr_render_stats *stats)
         stats->camera_rays += batch->camera_rays;
         stats->bounce_rays += batch->bounce_rays;
         stats->shadow_rays += batch->shadow_rays;
+        stats->bounce_rays += batch->crossings;
         stats->scatterings += batch->scatterings;
         stats->not_finite += batch->not_finite;
         for (int s = 0; s < MCR_STAGE_COUNT; s++)
@@ -129,7 +134,7 @@ static void collect(struct render *render, struct mcr_render_stats *stats)
             stats->not_finite_y = film->y0 + (uint32_t)(cell % pass->pixels / (film->x1 - film->x0));
             stats->not_finite_sample = pass->first + cell / pass->pixels * pass->cell_samples + batch->not_finite_sample;
         }
-        batch->camera_rays = batch->bounce_rays = batch->shadow_rays = batch->scatterings = batch->not_finite = 0;
+        batch->camera_rays = batch->bounce_rays = batch->shadow_rays = batch->crossings = batch->scatterings = batch->not_finite = 0;
         memset(batch->stage_seconds, 0, sizeof batch->stage_seconds);
     }
 }

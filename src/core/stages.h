@@ -14,6 +14,7 @@ void MCR_ISA_NAME(mcr_stage_cones)(struct mcr_batch *batch, uint32_t to, uint32_
 void MCR_ISA_NAME(mcr_stage_coordinates)(struct mcr_batch *batch);
 void MCR_ISA_NAME(mcr_stage_emit)(struct mcr_batch *batch, uint32_t begin, uint32_t end);
 void MCR_ISA_NAME(mcr_stage_background)(struct mcr_batch *batch);
+void MCR_ISA_NAME(mcr_stage_mirror)(struct mcr_batch *batch, const struct mcr_range *range);
 void MCR_ISA_NAME(mcr_stage_scatter)(struct mcr_batch *batch, const struct mcr_range *range);
 void MCR_ISA_NAME(mcr_stage_compact)(struct mcr_batch *batch);
 void MCR_ISA_NAME(mcr_stage_gather)(uint32_t n, const uint32_t *index, const double *table, double *out);

@@ -100,6 +100,12 @@ static void states(struct mcr_batch *batch)
             to->index[k] = from->index[l];
             to->planned[k] = from->planned[l];
         }
+    if (batch->core->needs_pixel)
+        for (uint32_t k = 0; k < batch->points; k++) {
+            uint32_t l = source[order[k]];
+            to->x[k] = from->x[l];
+            to->y[k] = from->y[l];
+        }
 }
 
 /* Newton's step onto |A (p - c)| = 1, A the inverse of the half axes, and the normal of that level set. */

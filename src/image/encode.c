@@ -71,7 +71,7 @@ static uint32_t code8(const double *edge, double v)
     return v < edge[k] * (1 + 1e-9) || v > edge[k + 1] * (1 - 1e-9) ? mcr_srgb_quantise(v, 255) : k;
 }
 
-/* One value for an integer format. */
+/* One value for an integer format, exposed and through the tone curve. */
 static uint32_t encode_integer(struct mcr_encoder *encoder, double v)
 {
     uint32_t peak = encoder->encoding == MCR_ENCODE_U8 ? 255 : 65535;
@@ -79,7 +79,6 @@ static uint32_t encode_integer(struct mcr_encoder *encoder, double v)
         encoder->not_finite++;
         return 0;
     }
-    v *= encoder->scale;
     if (v < 0 || v > 1) {
         encoder->overflowed++;
         return v < 0 ? 0 : peak;
@@ -132,21 +131,36 @@ static void round_rgbe(float *pixel, uint32_t channels)
     }
 }
 
+/* A pixel for an integer format. A grey one goes through the curve as one of three equal channels. */
+static void encode_pixel(struct mcr_encoder *encoder, const double *pixel, void *row, size_t first)
+{
+    double v[3];
+    for (uint32_t c = 0; c < 3; c++) {
+        double linear = pixel[encoder->from[c < encoder->channels ? c : 0]];
+        v[c] = isfinite(linear) ? mcr_clamp(linear * encoder->scale, -MCR_TONE_MOST, MCR_TONE_MOST) : linear;
+    }
+    mcr_tone_apply(&encoder->tone, v);
+    for (uint32_t c = 0; c < encoder->channels; c++) {
+        uint32_t code = encode_integer(encoder, v[c]);
+        if (encoder->encoding == MCR_ENCODE_U8) ((uint8_t *)row)[first + c] = (uint8_t)code;
+        else ((uint16_t *)row)[first + c] = (uint16_t)code;
+    }
+}
+
 void mcr_encode_row(struct mcr_encoder *encoder, uint32_t y, void *row)
 {
     const struct mcr_image *image = encoder->image;
     const double *pixel = image->data + (size_t)y * image->width * image->channels;
     uint32_t channels = encoder->channels;
     for (size_t x = 0; x < image->width; x++, pixel += image->channels) {
+        if (encoder->encoding == MCR_ENCODE_U8 || encoder->encoding == MCR_ENCODE_U16) {
+            encode_pixel(encoder, pixel, row, x * channels);
+            continue;
+        }
         for (uint32_t c = 0; c < channels; c++) {
             double v = pixel[encoder->all ? c : encoder->from[c]];
             size_t i = x * channels + c;
-            switch (encoder->encoding) {
-            case MCR_ENCODE_U8: ((uint8_t *)row)[i] = (uint8_t)encode_integer(encoder, v); break;
-            case MCR_ENCODE_U16: ((uint16_t *)row)[i] = (uint16_t)encode_integer(encoder, v); break;
-            case MCR_ENCODE_FLOAT: ((float *)row)[i] = encode_float(encoder, v); break;
-            case MCR_ENCODE_RGBE: ((float *)row)[i] = encode_rgbe(encoder, v); break;
-            }
+            ((float *)row)[i] = encoder->encoding == MCR_ENCODE_RGBE ? encode_rgbe(encoder, v) : encode_float(encoder, v);
         }
         if (encoder->encoding == MCR_ENCODE_RGBE) round_rgbe((float *)row + x * channels, channels);
     }

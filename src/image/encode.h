@@ -13,6 +13,7 @@ struct mcr_encoder {
     uint32_t all;                  /* 1: all channels of the image in their order; 0: from[] */
     uint32_t from[3];
     double scale;                  /* 2^exposure */
+    struct mcr_tone tone;          /* integer formats; linear after init */
     uint64_t overflowed, not_finite;
     double edge[257];              /* U8: the least linear value of each code, nearly; edge[256] is beyond 1 */
 };

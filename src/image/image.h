@@ -6,6 +6,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "image/tone.h"
+
 /* Linear Rec. 709 radiance, double, channels interleaved, rows from the top. */
 struct mcr_image {
     uint32_t width, height, channels;
@@ -28,6 +30,7 @@ struct mcr_write_options {
     double exposure;                        /* stops, within +-128: values are multiplied by 2^exposure; integer formats only */
     uint32_t attribute_count;
     const struct mcr_attribute *attribute;
+    struct mcr_tone tone;                   /* after the exposure; integer formats only */
 };
 
 /* What writing met. */

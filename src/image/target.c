@@ -234,6 +234,10 @@ static int check_options(const struct mcr_write_options *options, char *error, s
         return mcr_image_fail(error, length, "%u bits, expected 8 or 16", options->bits);
     if (!(fabs(options->exposure) <= 128))
         return mcr_image_fail(error, length, "exposure %g, expected -128 to 128 stops", options->exposure);
+    if (options->tone.curve >= MCR_TONE_COUNT) return mcr_image_fail(error, length, "no such tone curve");
+    if ((options->tone.curve == MCR_TONE_REINHARD || options->tone.curve == MCR_TONE_HABLE) && 
+        !(options->tone.white >= MCR_TONE_LEAST_WHITE && options->tone.white <= MCR_TONE_MOST_WHITE))
+        return mcr_image_fail(error, length, "tone curve with white %g, expected %g to %g", options->tone.white, MCR_TONE_LEAST_WHITE, MCR_TONE_MOST_WHITE);
     return 0;
 }
 
@@ -252,6 +256,7 @@ int mcr_target_write(struct mcr_target *target, const struct mcr_image *image, c
     int status = check_options(options, reason, sizeof reason);
     if (!status) {
         mcr_encoder_init(&encoder, image, target->format, options->bits, options->exposure);
+        encoder.tone = options->tone;
         status = target_write(target, &content, reason, sizeof reason);
         result->overflowed = encoder.overflowed;
         result->not_finite = encoder.not_finite;

@@ -7,12 +7,13 @@
  *     sign    = ("+" | "-") sign | power
  *     power   = primary [ "^" sign ]            so that -2^2 is -4, 2^-1 is 0.5 and 2^3^2 is 2^9
  *
- * What is no arithmetic (a tuple, a string, a name, a call) passes through as it is; an operator beside it is an error. Results are finite
- * or errors. Nothing of libm is called but sqrt and fabs: the numbers of a scene are the same on every machine.
+ * A tuple of three numbers (a colour, a vector) may be multiplied with a number and divided by one. What else is no arithmetic (a tuple, a string, a
+ * name, a call) passes through as it is; an operator beside it is an error. Results are finite or errors. Nothing of libm is called but sqrt and fabs: the numbers of a scene are the same on every machine.
  */
 #include "language/internal.h"
 
 #include "base/elementary.h"
+#include "language/blackbody.h"
 
 #include <math.h>
 
@@ -40,14 +41,60 @@ int mcr_number(struct mcr_parser *parser, struct mcr_value *value)
     return value->kind == MCR_VALUE_NUMBER;
 }
 
+static struct mcr_value colour(struct mcr_parser *parser, struct mcr_place place, const double rgb[3])
+{
+    struct mcr_value value = { .kind = MCR_VALUE_TUPLE, .place = place, .count = 3, .text = "" }, *item;
+    item = mcr_arena_alloc(parser->arena, 3, sizeof *item);
+    if (!item) {
+        mcr_fatal(parser);
+        return mcr_error_value(place);
+    }
+    for (int i = 0; i < 3; i++)
+        item[i] = (struct mcr_value){ .kind = MCR_VALUE_NUMBER, .place = place, .number = rgb[i], .text = "" };
+    value.item = item;
+    return value;
+}
+
+/* Three numbers, and nothing else. */
+static int is_triple(const struct mcr_value *value)
+{
+    int is = value->kind == MCR_VALUE_TUPLE && value->count == 3;
+    for (uint32_t i = 0; is && i < 3; i++)
+        is = value->item[i].kind == MCR_VALUE_NUMBER;
+    return is;
+}
+
+/* A triple times a number, or over it. */
+static struct mcr_value scaled(struct mcr_parser *parser, struct mcr_place place, const struct mcr_value *triple, int operator, double by)
+{
+    double result[3];
+    if (operator == '/' && by == 0)
+        return mcr_finite(parser, place, INFINITY, "division by zero");
+    for (int i = 0; i < 3; i++) {
+        result[i] = operator == '/' ? triple->item[i].number / by : triple->item[i].number * by;
+        if (!mcr_is_finite(result[i]))
+            return mcr_finite(parser, place, result[i], "the result is too large, the limit is 1.797e308");
+    }
+    return colour(parser, place, result);
+}
+
 /* left operator right, at the place from left's start to the last token taken. */
 static struct mcr_value combine(struct mcr_parser *parser, struct mcr_value *left, int operator, struct mcr_value *right)
 {
     struct mcr_place place = mcr_span(parser, &left->place);
     const char *otherwise = "the result is too large, the limit is 1.797e308";
-    int both = mcr_number(parser, left) & mcr_number(parser, right);
-    double a = left->number, b = right->number, result;
+    double a, b, result;
+    int both;
 
+    mcr_plain(parser, left);
+    mcr_plain(parser, right);
+    if (is_triple(left) && right->kind == MCR_VALUE_NUMBER && (operator == '*' || operator == '/'))
+        return scaled(parser, place, left, operator, right->number);
+    if (left->kind == MCR_VALUE_NUMBER && is_triple(right) && operator == '*')
+        return scaled(parser, place, right, operator, left->number);
+    both = mcr_number(parser, left) & mcr_number(parser, right);
+    a = left->number;
+    b = right->number;
     if (!both)
         return mcr_error_value(place);
     switch (operator) {
@@ -134,7 +181,7 @@ struct mcr_value mcr_expression(struct mcr_parser *parser)
 
 /* ---- functions ---- */
 
-enum function { SQRT, SIN, COS, TAN, ABS, MIN, MAX, SRGB, HEX };
+enum function { SQRT, SIN, COS, TAN, ABS, MIN, MAX, SRGB, HEX, BLACKBODY };
 
 static const struct {
     const char *word;
@@ -143,6 +190,7 @@ static const struct {
     [SQRT] = { "sqrt", 1, 1 }, [SIN] = { "sin", 1, 1 }, [COS] = { "cos", 1, 1 },
     [TAN] = { "tan", 1, 1 },   [ABS] = { "abs", 1, 1 }, [MIN] = { "min", 2, UINT32_MAX },
     [MAX] = { "max", 2, UINT32_MAX }, [SRGB] = { "srgb", 3, 3 }, [HEX] = { "hex", 1, 1 },
+    [BLACKBODY] = { "blackbody", 1, 1 },
 };
 
 static int function_of(const struct mcr_token *token)
@@ -156,20 +204,6 @@ static int function_of(const struct mcr_token *token)
 int mcr_is_function(const struct mcr_token *token)
 {
     return function_of(token) >= 0;
-}
-
-static struct mcr_value colour(struct mcr_parser *parser, struct mcr_place place, const double rgb[3])
-{
-    struct mcr_value value = { .kind = MCR_VALUE_TUPLE, .place = place, .count = 3, .text = "" }, *item;
-    item = mcr_arena_alloc(parser->arena, 3, sizeof *item);
-    if (!item) {
-        mcr_fatal(parser);
-        return mcr_error_value(place);
-    }
-    for (int i = 0; i < 3; i++)
-        item[i] = (struct mcr_value){ .kind = MCR_VALUE_NUMBER, .place = place, .number = rgb[i], .text = "" };
-    value.item = item;
-    return value;
 }
 
 /* IEC 61966-2-1: encoded value in 0..1 -> linear. */
@@ -217,6 +251,18 @@ static struct mcr_value hex(struct mcr_parser *parser, struct mcr_place place, c
     return colour(parser, place, rgb);
 }
 
+static struct mcr_value blackbody(struct mcr_parser *parser, struct mcr_place place, const struct mcr_value *argument)
+{
+    double rgb[3], kelvin = argument->number;
+    if (!(kelvin >= MCR_BLACKBODY_LEAST && kelvin <= MCR_BLACKBODY_MOST)) {
+        mcr_report(parser->diagnostics, MCR_ERROR, argument->place, "%.10g is out of range for 'blackbody', expected at least %g and at most %.0f kelvin", kelvin,
+                   MCR_BLACKBODY_LEAST, MCR_BLACKBODY_MOST);
+        return mcr_error_value(place);
+    }
+    mcr_blackbody(kelvin, rgb);
+    return colour(parser, place, rgb);
+}
+
 static struct mcr_value apply(struct mcr_parser *parser, int function, struct mcr_place place, const struct mcr_value argument[3], double folded)
 {
     double x = argument[0].number;
@@ -235,6 +281,8 @@ static struct mcr_value apply(struct mcr_parser *parser, int function, struct mc
         return srgb(parser, place, argument);
     case HEX:
         return hex(parser, place, argument);
+    case BLACKBODY:
+        return blackbody(parser, place, argument);
     default:
         return mcr_finite(parser, place, folded, "");
     }

@@ -94,9 +94,9 @@ int mcr_let_exists(struct mcr_parser *parser, const struct mcr_token *token)
     return let_of(parser, token) != NULL;
 }
 
-static const char *const reserved[] = { "abs", "cos", "hex", "include", "inf", "infinity", "let", "max", "mcrender",
+static const char *const reserved[] = { "abs", "blackbody", "cos", "hex", "include", "inf", "infinity", "let", "max", "mcrender",
                                         "min", "nan", "pi",  "sin",     "sqrt", "srgb",     "tan" };
-static const char *const usable[] = { "abs", "cos", "hex", "max", "min", "pi", "sin", "sqrt", "srgb", "tan" };
+static const char *const usable[] = { "abs", "blackbody", "cos", "hex", "max", "min", "pi", "sin", "sqrt", "srgb", "tan" };
 
 int mcr_is_reserved(const char *word)
 {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * The located tree that scene text is parsed into. Arithmetic, `let`, `include`, srgb() and hex() are gone from it: numbers
+ * The located tree that scene text is parsed into. Arithmetic, `let`, `include`, srgb(), hex() and blackbody() are gone from it: numbers
  * are evaluated. What words mean is not known here (src/scene checks that), except which words open blocks.
  * Immutable after parsing; lives in the arena given to the parser.
  */
@@ -12,7 +12,7 @@
 
 enum mcr_value_kind {
     MCR_VALUE_NUMBER, /* number; finite */
-    MCR_VALUE_TUPLE,  /* ( a, b, … ): item[count], numbers, tuples and strings, in some blocks names and calls, too; a colour from srgb() or hex() is a tuple of 3 numbers */
+    MCR_VALUE_TUPLE,  /* ( a, b, … ): item[count], numbers, tuples and strings, in some blocks names and calls, too; a colour from srgb(), hex() or blackbody() is a tuple of 3 numbers */
     MCR_VALUE_STRING, /* text */
     MCR_VALUE_NAME,   /* a bare word: text. Where a `let` of that name is in force, `bound` is its value: NUMBER, TUPLE, STRING or ERROR */
     MCR_VALUE_CALL,   /* text ( argument, … ): argument[count] */

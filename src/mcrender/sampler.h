@@ -207,7 +207,12 @@ struct mcr_samples {
     const uint32_t *index;     /* the sample's number within its replicate, 0 .. planned-1 */
     const uint32_t *planned;   /* samples planned for this pixel and replicate, >= 1 */
     const uint32_t *bounce;    /* the path's bounce: 0 at the first surface; unused for dimensions below 8 */
+    const uint32_t *x, *y;     /* the pixel, from the top left of the whole film; NULL unless the source needs MCR_NEEDS_PIXEL */
+    uint64_t replicate_key;    /* hash of seed and replicate, from which pixel_key is made: equal for all pixels of the replicate */
 };
+
+/* What a number source asks for beyond the rest of struct mcr_samples. */
+#define MCR_NEEDS_PIXEL 1u /* x and y */
 
 struct mcr_numbers_plugin {
     struct mcr_descriptor head; /* kind MCR_KIND_NUMBERS */
@@ -227,6 +232,8 @@ struct mcr_numbers_plugin {
     /* Stores number[k][i] in [0,1) for dimension first + k (+ 32 * bounce[i] where first >= 8), k < count. */
     int32_t (*fill)(const struct mcr_host *host, struct mcr_context *context, const void *instance,
                     const struct mcr_samples *samples, uint32_t first, uint32_t count, double *const *number);
+    /* MCR_NEEDS_*, asked once after create: the host provides only what some source of the sampler needs. May be NULL: nothing. */
+    uint32_t (*needs)(const void *instance);
 };
 
 /* ---- Host services --------------------------------------------------------------------------------------------- */

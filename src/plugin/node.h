@@ -50,6 +50,7 @@ struct mcr_sampler {
     struct mcr_node *directions;
     const char *expression;                      /* printed back in normal form, all weights written */
     int correlated;                              /* any source says so */
+    uint32_t needs;                              /* MCR_NEEDS_* of all sources that supply anything */
     uint32_t quirks;                             /* bits: those of struct mcr_quirks that a node has, by whomever set */
 };
 

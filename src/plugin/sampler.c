@@ -256,6 +256,8 @@ static int split(struct mcr_diagnostics *diagnostics, struct mcr_sampler *sample
         }
         if (supplied && plugin->correlated(root->instance))
             sampler->correlated = 1;
+        if (supplied && plugin->needs)
+            sampler->needs |= plugin->needs(root->instance);
     }
     sampler->directions = root;
     return 0;

@@ -204,6 +204,17 @@ static void settle_compat(struct mcr_build *build)
     scene->render.compat = acts;
 }
 
+/*
+ * The best unbiased sampler for what the scene holds, by 1/(MSE t) in the scenes of scenes/: looking for emitters and drawing as the material does,
+ * each weighted by how likely it was; without emitters that can be sampled, as the material does alone.
+ */
+static const char *default_sampler(const struct mcr_scene *scene, int planes_emit)
+{
+    if (scene->render.compat) /* quirks are the founding study's: so is the sampler */
+        return scene->has_lights && !planes_emit ? "mixture(cosine 1, light 1)" : "cosine";
+    return scene->has_lights && !planes_emit ? "sobol(nee)" : "sobol(bsdf)";
+}
+
 /* The sampler, and how many replicates: what is settled last. */
 static void build_sampler(struct mcr_build *build)
 {
@@ -215,8 +226,8 @@ static void build_sampler(struct mcr_build *build)
     if (build->overrides && build->overrides->sampler && !build->sampler)
         return;
     if (!build->sampler) {
-        const char *text = lights && !build->planes_emit ? "mixture(cosine 1, light 1)" : "cosine";
-        build->sampler = mcr_parse_value(build->arena, build->diagnostics, "default sampler", text);
+        build->sampler = mcr_parse_value(build->arena, build->diagnostics, "default sampler", default_sampler(scene, build->planes_emit));
+        scene->sampler_chosen = 1;
     }
     if (!build->sampler || mcr_value_resolve(build->sampler)->kind == MCR_VALUE_ERROR)
         return;

@@ -11,6 +11,7 @@
 
 #include "base/arena.h"
 #include "base/diag.h"
+#include "image/tone.h"
 #include "language/tree.h"
 #include "plugin/node.h"
 #include "plugin/registry.h"
@@ -100,14 +101,18 @@ struct mcr_camera {
     double world[3];                    /* its position in the world */
 };
 
-enum mcr_filter_kind { MCR_FILTER_BOX, MCR_FILTER_TENT, MCR_FILTER_GAUSSIAN };
+enum mcr_filter_kind { MCR_FILTER_BOX, MCR_FILTER_TENT, MCR_FILTER_GAUSSIAN, MCR_FILTER_MITCHELL };
 
 struct mcr_film_settings {
     uint32_t width, height;                  /* the full picture */
     uint32_t x0, y0, x1, y1;                 /* the crop that is rendered: x0 <= x < x1, from the top left */
     uint32_t filter;
-    double filter_radius;                    /* pixels; box 0.5, tent 1, gaussian (circular cut) 1.5 */
+    double filter_radius;                    /* pixels; box 0.5, tent 1, gaussian (circular cut) 1.5, mitchell 2 */
     double filter_sigma;                     /* gaussian, pixels */
+    double filter_b, filter_c;               /* mitchell */
+    const double *filter_edge;               /* MCR_MITCHELL_CELLS + 1 for mitchell, whose samples have weights; NULL: all weigh 1 */
+    double exposure;                         /* stops, for formats of 8 and 16 bits, as is the tone curve */
+    struct mcr_tone tone;
 };
 
 enum mcr_precision { MCR_PRECISION_DOUBLE };
@@ -169,6 +174,7 @@ struct mcr_scene {
     uint32_t dropped;            /* degenerate triangles of meshes, left out */
     int has_lights;              /* bounded shapes emit */
     struct mcr_place sampler_place;
+    int sampler_chosen;          /* by the program, since neither the scene nor the command line names one */
     const struct mcr_scene_study *study; /* NULL where nothing asks for one */
 };
 
@@ -180,6 +186,9 @@ struct mcr_overrides {
     uint32_t spp, depth, threads, width, height, crop[4], accel, batch;
     uint64_t seed;
     const char *sampler; /* an expression */
+    const char *tone;    /* an expression */
+    int has_exposure;
+    double exposure;
     const struct mcr_study_texts *study; /* NULL: a block `study` is judged if there is one */
     int has_roulette_from;
     uint32_t roulette_from;

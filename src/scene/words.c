@@ -5,6 +5,8 @@
 
 #include <string.h>
 
+#include "image/tone.h"
+
 #define COUNT(table) ((uint32_t)(sizeof(table) / sizeof(table)[0]))
 
 /* A row: word, type, flags, unit, minimum, maximum, defaults of the three components, summary. */
@@ -50,6 +52,8 @@ static const struct mcr_parameter film[] = {
     [FILM_CROP] = ROW("crop", MCR_WORD_RECTANGLE, 0, "pixels", 0, MCR_FILM_LIMIT, 0, 0, 0,
                       "The part to render, from the top left: x0 <= x < x1, y0 <= y < y1; by default all."),
     [FILM_FILTER] = WORD("filter", MCR_WORD_FILTER, 0, "Reconstruction filter; box by default."),
+    [FILM_EXPOSURE] = ROW("exposure", MCR_TYPE_NUMBER, 0, "stops", -64, 64, 0, 0, 0, "Brightens files of 8 and 16 bits by 2^stops; no others."),
+    [FILM_TONE] = WORD("tone", MCR_WORD_TONE, 0, "Tone curve of files of 8 and 16 bits, behind the exposure; linear by default."),
 };
 static const struct mcr_parameter box_filter[] = {
     [FILTER_RADIUS] = ROW("radius", MCR_TYPE_NUMBER, ABOVE, "pixels", 0, 64, 0.5, 0, 0, "Half the width of the box."),
@@ -60,6 +64,17 @@ static const struct mcr_parameter tent_filter[] = {
 static const struct mcr_parameter gaussian_filter[] = {
     [FILTER_RADIUS] = ROW("radius", MCR_TYPE_NUMBER, ABOVE, "pixels", 0, 64, 1.5, 0, 0, "Where the filter is cut."),
     [FILTER_SIGMA] = ROW("sigma", MCR_TYPE_NUMBER, ABOVE, "pixels", 0, 64, 0.5, 0, 0, "Standard deviation."),
+};
+static const struct mcr_parameter mitchell_filter[] = {
+    [FILTER_RADIUS] = ROW("radius", MCR_TYPE_NUMBER, ABOVE, "pixels", 0, 64, 2, 0, 0, "Where the filter ends."),
+    [FILTER_B] = ROW("b", MCR_TYPE_NUMBER, 0, "", 0, 1, 1.0 / 3, 0, 0, "Blur: 1 with c = 0 is the cubic B-spline."),
+    [FILTER_C] = ROW("c", MCR_TYPE_NUMBER, 0, "", 0, 1, 1.0 / 3, 0, 0, "Ringing: 0.5 with b = 0 is the Catmull-Rom spline."),
+};
+static const struct mcr_parameter reinhard_tone[] = {
+    [TONE_WHITE] = ROW("white", MCR_TYPE_NUMBER, 0, "", MCR_TONE_LEAST_WHITE, MCR_TONE_MOST_WHITE, 4, 0, 0, "The least luminance that becomes white."),
+};
+static const struct mcr_parameter hable_tone[] = {
+    [TONE_WHITE] = ROW("white", MCR_TYPE_NUMBER, 0, "", MCR_TONE_LEAST_WHITE, MCR_TONE_MOST_WHITE, 5.6, 0, 0, "The least value that becomes 1."),
 };
 static const struct mcr_parameter roulette[] = {
     ROW("from", MCR_TYPE_INTEGER, 0, "", 0, 2147483646, 8, 0, 0, "The first scattering event, counted from 0, at which it may end a path."),
@@ -231,6 +246,13 @@ const struct mcr_block_word mcr_filter_words[MCR_FILTER_COUNT] = {
     BLOCK("box", NULL, MCR_BLOCK_FILM, box_filter, "Constant."),
     BLOCK("tent", NULL, MCR_BLOCK_FILM, tent_filter, "Falls off linearly in x and y."),
     BLOCK("gaussian", NULL, MCR_BLOCK_FILM, gaussian_filter, "A Gaussian, cut off in a circle."),
+    BLOCK("mitchell", NULL, MCR_BLOCK_FILM, mitchell_filter, "Mitchell and Netravali's cubic, sharper, negative in part."),
+};
+const struct mcr_block_word mcr_tone_words[MCR_TONE_WORDS] = {
+    { "linear", NULL, MCR_BLOCK_FILM, 0, NULL, "As it is; what is above 1 is clipped." },
+    BLOCK("reinhard", NULL, MCR_BLOCK_FILM, reinhard_tone, "Compresses luminance, keeps hues."),
+    BLOCK("hable", NULL, MCR_BLOCK_FILM, hable_tone, "Filmic, with toe and shoulder."),
+    { "aces", NULL, MCR_BLOCK_FILM, 0, NULL, "Filmic, with more contrast." },
 };
 const struct mcr_block_word mcr_roulette_word = BLOCK("on", NULL, MCR_BLOCK_RENDER, roulette, "Russian roulette.");
 
@@ -263,7 +285,8 @@ const char *mcr_word_form(uint32_t type)
         [MCR_WORD_FACE_LIST] = "a tuple of faces (i, j, k) or (i, j, k, l)",
         [MCR_WORD_MATERIAL] = "the name of a material",
         [MCR_WORD_SAMPLER] = "a sampler such as cosine or mixture(cosine 1, light 1)",
-        [MCR_WORD_FILTER] = "box, tent or gaussian",
+        [MCR_WORD_FILTER] = "box, tent, gaussian or mitchell",
+        [MCR_WORD_TONE] = "linear, reinhard, hable or aces",
         [MCR_WORD_ROULETTE] = "on, off or on(from=N)",
         [MCR_WORD_COMPAT] = "none, clamp, background-at-limit, disk-polar, sphere-spherical or floor-sqrt, or a tuple of these",
         [MCR_WORD_TEXT] = "a text in quotes",

@@ -30,6 +30,7 @@ enum mcr_word_type {
     MCR_WORD_MATERIAL,    /* a material's name */
     MCR_WORD_SAMPLER,     /* a sampler expression */
     MCR_WORD_FILTER,      /* a filter: a name or a call */
+    MCR_WORD_TONE,        /* a tone curve: a name or a call */
     MCR_WORD_ROULETTE,    /* on, off or on(from=N) */
     MCR_WORD_COMPAT,      /* none, a quirk's name, or a tuple of them */
     MCR_WORD_TEXT,        /* a string */
@@ -69,17 +70,21 @@ extern const uint32_t mcr_scene_block_count;
 /* The row of a block by its word and, for cameras and textures, its kind; NULL if there is none. */
 const struct mcr_block_word *mcr_scene_block(const char *word, const char *kind);
 
-/* Arguments of `filter`: box(radius=0.5), tent(radius=1), gaussian(sigma=0.5, radius=1.5). In the order of enum mcr_filter_kind. */
-#define MCR_FILTER_COUNT 3u
+/* Arguments of `filter`: box(radius=0.5), tent(radius=1), gaussian(sigma=0.5, radius=1.5), mitchell(radius=2, b=1/3, c=1/3). In the order of enum mcr_filter_kind. */
+#define MCR_FILTER_COUNT 4u
 extern const struct mcr_block_word mcr_filter_words[MCR_FILTER_COUNT];
+/* Arguments of `tone`: linear, reinhard(white=4), hable(white=5.6), aces. In the order of enum mcr_tone_curve. */
+#define MCR_TONE_WORDS 4u
+extern const struct mcr_block_word mcr_tone_words[MCR_TONE_WORDS];
 /* The argument of `roulette on(from=N)`. */
 extern const struct mcr_block_word mcr_roulette_word;
 
 /* Places in the tables. */
 enum { CAMERA_FROM, CAMERA_TO, CAMERA_UP, CAMERA_FOV, CAMERA_FOCAL, CAMERA_FILM_HEIGHT, CAMERA_LENS_RADIUS, CAMERA_FOCUS_DISTANCE };
 enum { ORTHOGRAPHIC_HEIGHT = CAMERA_FOV };
-enum { FILM_SIZE, FILM_CROP, FILM_FILTER };
-enum { FILTER_RADIUS, FILTER_SIGMA };
+enum { FILM_SIZE, FILM_CROP, FILM_FILTER, FILM_EXPOSURE, FILM_TONE };
+enum { TONE_WHITE };
+enum { FILTER_RADIUS, FILTER_SIGMA, FILTER_B = 1, FILTER_C };
 enum {
     RENDER_SAMPLER, RENDER_SPP, RENDER_DEPTH, RENDER_SEED, RENDER_THREADS, RENDER_REPLICATES, RENDER_ROULETTE, RENDER_BACKGROUND,
     RENDER_ACCEL, RENDER_PRECISION, RENDER_MIS, RENDER_BATCH, RENDER_COMPAT

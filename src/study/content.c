@@ -63,12 +63,13 @@ static uint64_t add_value(uint64_t hash, const struct mcr_value *value)
     }
 }
 
-/* What every cell says itself. */
+/* What every cell says itself, or what concerns files of 8 bits only. */
 static int is_of_cells(const char *block, const char *word)
 {
     static const char *const words[][2] = {
         {"render", "sampler"}, {"render", "spp"},       {"render", "depth"},     {"render", "seed"},     {"render", "threads"}, {"render", "replicates"},
         {"render", "accel"},   {"render", "precision"}, {"render", "roulette"},  {"render", "compat"},   {"film", "size"},      {"film", "crop"},
+        {"film", "exposure"},  {"film", "tone"},
     };
     for (size_t i = 0; i < sizeof words / sizeof *words; i++)
         if (!strcmp(words[i][0], block) && !strcmp(words[i][1], word))

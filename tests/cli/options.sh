@@ -51,6 +51,12 @@ sets replaced compat none --compat clamp --compat none
 sets replaced luminance 0.25
 sets replaced luminance 0.5 --set glow=0.5
 sets replaced luminance 0.75 --set 'glow=0.5 + 0.25'
+sets "the scene's" tone linear
+sets "the scene's" exposure 0
+sets replaced tone 'reinhard(white=4)' --tone reinhard
+sets replaced tone 'hable(white=2.5)' --tone 'hable(white=5 / 2)'
+sets replaced tone aces --tone hable --tone aces
+sets replaced exposure -1.5 --exposure -1.5
 sets 'the last one counts' spp 9 --spp 3 --spp 9
 sets '--name=value' spp 7 --spp=7
 sets '--name=value' luminance 0.5 --set=glow=0.5
@@ -72,6 +78,31 @@ check "--exposure 1 doubles" cmp bright.ppm set.ppm
 run glow.scn --quiet --exposure -1 --set glow=0.5 -o dark.ppm
 run glow.scn --quiet -o set.ppm
 check "--exposure -1 halves" cmp dark.ppm set.ppm
+# 0.25 2^2 = 1 is the white of reinhard(white=1), whose curve goes through (1, 1); 0.25 becomes 0.25 (1 + 0.25) / 1.25 = 0.25
+run glow.scn --quiet --exposure 2 --tone 'reinhard(white=1)' -o toned.ppm
+run glow.scn --quiet --set glow=1 -o set.ppm
+check "--tone: white becomes 1" cmp toned.ppm set.ppm
+run glow.scn --quiet --tone 'reinhard(white=0.5)' -o toned.ppm
+run glow.scn --quiet --set glow=0.4 -o set.ppm
+check "--tone reinhard(white=0.5): 0.25 becomes 0.4" cmp toned.ppm set.ppm
+run glow.scn --quiet --tone aces --exposure 3 -o toned.pfm
+run glow.scn --quiet -o set.pfm
+check "--tone and --exposure change no PFM" cmp toned.pfm set.pfm
+sed 's/^film { /film { exposure 1 tone reinhard(white=1)   /' glow.scn >shown.scn
+run shown.scn --quiet -o toned.ppm
+run glow.scn --quiet --exposure 1 --tone 'reinhard(white=1)' -o set.ppm
+check "the same in the film block" cmp toned.ppm set.ppm
+run shown.scn -o toned.ppm
+ends "the report tells" 0 "display   tone reinhard(white=1), exposure 1 stops"
+run glow.scn --tone sepia -o bad.ppm
+ends "--tone of an unknown curve" 3 "--tone:1:1: error: unknown tone 'sepia' of 'film', expected linear, reinhard, hable or aces"
+run glow.scn --tone 'reinhard(white=0)' -o bad.ppm
+ends "--tone with a white of 0" 3 "--tone:1:16: error: 'white' of 'reinhard' is 0"
+run glow.scn --tone 'aces(white=2)' -o bad.ppm
+ends "--tone with an argument that there is not" 3 "--tone:1:6: error: 'aces' takes no arguments"
+run glow.scn --tone 3 -o bad.ppm
+ends "--tone with a number" 3 "--tone:1:1: error: 'tone' of 'film' is 3, expected linear, reinhard, hable or aces"
+refute "no picture of them" test -e bad.ppm
 cp glow.scn ./-dash.scn
 run --quiet -o dash.ppm -- -dash.scn
 ends "-- ends the options" 0
@@ -121,7 +152,7 @@ refused "--accel embree is not available in this build" --accel embree
 refused "--sampler expects EXPR" --sampler ''
 refused "--report expects FILE" --report=
 for option in -o --spp --depth --seed --threads --sampler --size --crop --precision --accel --isa --batch --replicates --roulette --compat --set --plugin \
-    --layers --report --bits --exposure; do
+    --layers --report --bits --exposure --tone; do
     refused "$option expects" "$option"
 done
 for option in --quiet --werror --profile --help --version; do refused "$option takes no value" "$option=yes"; done
@@ -182,7 +213,7 @@ for how in "--help" "-h" "check --help" "plugins --help" "--hel"; do
     check "$how: nothing on stderr" test ! -s "$TMPDIR/stderr"
 done
 for option in -o --spp --depth --seed --threads --sampler --size --crop --precision --accel --isa --batch --replicates --roulette --compat --set \
-    --plugin --layers --report --profile --bits --exposure --quiet --werror --help --version; do
+    --plugin --layers --report --profile --bits --exposure --tone --quiet --werror --help --version; do
     check "--help tells $option" grep -q -- "^\(.* \)\?$option " "$TMPDIR/stdout"
 done
 run --version

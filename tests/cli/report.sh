@@ -124,6 +124,18 @@ else
     for text in 'mcrender:biased: "true"' 'mcrender:compat: "clamp, background-at-limit"'; do check "EXR: $text" grep -qF "$text" described; done
 fi
 
+# ---- a scene that names no sampler --------------------------------------------------------------------------------------------------------
+for what in 'sobol(nee)|quad { corner (-1, -1, 2)   u (0, 2, 0)   v (2, 0, 0)   material lamp }' 'sobol(bsdf)|plane { point (0, 0, 2)   normal (0, 0, -1)   material lamp }' \
+    'sobol(bsdf)|sphere { center (0, 0, 0)   radius 0.5   material white }'; do
+    printf '%s\n' 'mcrender 1' 'camera perspective { from (0, 0, 1)   to (0, 0, 0)   up (0, 1, 0)   fov 40 }' 'material white lambert { albedo 0.5 }' \
+        'material lamp emitter { radiance 1 }' 'plane { point (0, 0, 0)   normal (0, 0, 1)   material white }' "${what#*|}" >chosen.scn
+    run chosen.scn --size 4x4 --report c.json -o c.ppm
+    check "${what%%|*} is chosen, and told" grep -qF "sampler   ${what%%|*} (chosen for this scene, which names none); " "$TMPDIR/stderr"
+    check "and in JSON" grep -q '"sampler_chosen": true' c.json
+    run chosen.scn --size 4x4 --report c.json -o c.ppm --sampler uniform
+    check "a sampler that is named is not called chosen" test "$(grep -c '(chosen\|"sampler_chosen": true' "$TMPDIR/stderr" c.json | sed 's/.*://' | paste -sd' ')" = '0 0'
+done
+
 # ---- memory ----------------------------------------------------------------------------------------------------------------------------
 if [ "$MCR_SANITIZED" = 1 ]; then
     skip "memory" "sanitizers take their own"

@@ -288,10 +288,13 @@ static void test_table(void)
     ok(fabs(e->emitter[0].probability - disk / (disk + sphere)) < 1e-15 && e->emitter[3].probability >= 0 &&
        e->emitter[3].probability < 1e-50,
        "probability in proportion to luminance, area and sides: %.17g", e->emitter[0].probability);
+    double power = MCR_PI * 1e30 * (disk + sphere);
+    ok(fabs(mcr_emitters_power(e) / power - 1) < 1e-14, "power of all: %.17g", mcr_emitters_power(e));
     stage_end(&s);
 
     stage_begin(&s);
     stage_ready(&s);
+    ok(mcr_emitters_power(s.emitters) == 0, "no emitters, no power");
     struct batch b;
     batch_begin(&b, 8);
     batch_draw(&b, &s, best_functions(), 1);

@@ -56,6 +56,10 @@ compare 'cornell-box, light by area' "$srcdir/scenes/cornell-box.scn" --spp 5 --
 compare 'every-shape, nee' "$srcdir/scenes/every-shape.scn" --spp 5 --sampler 'stratified(nee)'
 compare 'cornell-box, bsdf and light' "$srcdir/scenes/cornell-box.scn" --spp 5 --sampler 'mixture(bsdf 2, light(by=area) 3)'
 
+sed 's/filter box/filter mitchell/' "$srcdir/scenes/cornell-box.scn" >"$TMPDIR/mitchell.scn"
+check 'a scene with mitchell' grep -q 'filter mitchell' "$TMPDIR/mitchell.scn"
+compare 'cornell-box, mitchell' "$TMPDIR/mitchell.scn" --spp 21
+
 quirks=clamp,background-at-limit,disk-polar,sphere-spherical,floor-sqrt
 compare 'spheres-thinlens, every quirk' "$srcdir/scenes/spheres-thinlens.scn" --spp 21 --sampler 'stratified(mixture(cosine 1, light 1))' --compat $quirks
 compare 'cornell-box, quirks' "$srcdir/scenes/cornell-box.scn" --spp 5 --compat clamp,disk-polar

@@ -13,7 +13,8 @@ int main(void)
     static uint32_t sample[LANES], planned[LANES], bounce[LANES];
     static struct mcr_context context;
     const struct mcr_plugin *file = load("independent");
-    struct mcr_samples samples = {sizeof samples, LANES, pixel_key, path_key, sample, planned, bounce};
+    struct mcr_samples samples = {.size = sizeof samples, .n = LANES, .pixel_key = pixel_key, .path_key = path_key,
+                                  .index = sample, .planned = planned, .bounce = bounce};
     double *number[16];
 
     for (uint32_t i = 0; i < LANES; i++) {

@@ -37,7 +37,8 @@ static void set(uint32_t lane, uint64_t pixel, uint32_t number, uint32_t of)
 
 static void fill(void *instance, uint32_t lanes)
 {
-    struct mcr_samples samples = {sizeof samples, lanes, pixel_key, path_key, sample, planned, bounce};
+    struct mcr_samples samples = {.size = sizeof samples, .n = lanes, .pixel_key = pixel_key, .path_key = path_key,
+                                  .index = sample, .planned = planned, .bounce = bounce};
     double *number[2] = {x, y};
 
     if (plugin->fill(&stand_in, &context, instance, &samples, 0, 2, number) != MCR_OK) {

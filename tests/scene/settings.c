@@ -51,7 +51,8 @@ static void defaults(void)
     f = &world.scene->film;
     r = &world.scene->render;
     ok(f->width == 512 && f->height == 512 && f->x0 == 0 && f->y0 == 0 && f->x1 == 512 && f->y1 == 512, "512 x 512, all of it");
-    ok(f->filter == MCR_FILTER_BOX && f->filter_radius == 0.5, "a box filter");
+    ok(f->filter == MCR_FILTER_BOX && f->filter_radius == 0.5 && !f->filter_edge, "a box filter");
+    ok(f->exposure == 0 && f->tone.curve == MCR_TONE_LINEAR, "shown as it is");
     ok(r->spp == 16 && r->depth == 50 && r->seed == 0 && r->threads == 0 && r->batch == 0 && r->replicates == 1,
        "16 spp, depth 50, seed 0");
     ok(r->roulette && r->roulette_from == 8 && !r->mis_power && r->accel == MCR_ACCEL_AUTO && mcr_largest(r->background) == 0,
@@ -96,6 +97,29 @@ static void given(void)
     ok(r->spp == 5 && r->depth == 0 && r->seed == 1ull << 63 && r->accel == MCR_ACCEL_LIST && r->threads == 2,
        "--spp, --depth, --seed and --accel win");
     ok(strcmp(world.scene->sampler->directions->descriptor->name, "uniform") == 0, "--sampler wins");
+    close_world(&world);
+}
+
+/* How files of 8 bits show it. */
+static void shown(void)
+{
+    static const char text[] = CAMERA "film { exposure -1.5 tone reinhard(white=8) filter mitchell(b=0, c=0.5) }\n";
+    static const struct mcr_overrides over = { .has_exposure = 1, .exposure = 2, .tone = "hable" }, linear = { .tone = "linear" };
+    struct world world = open_world(text, NULL);
+    const struct mcr_film_settings *f = &world.scene->film;
+    ok(f->exposure == -1.5 && f->tone.curve == MCR_TONE_REINHARD && f->tone.white == 8, "exposure and tone");
+    ok(f->filter == MCR_FILTER_MITCHELL && f->filter_radius == 2 && f->filter_b == 0 && f->filter_c == 0.5 && f->filter_edge, "a mitchell filter");
+    close_world(&world);
+    world = open_world(text, &over);
+    f = &world.scene->film;
+    ok(f->exposure == 2 && f->tone.curve == MCR_TONE_HABLE && f->tone.white == 5.6, "--exposure and --tone win");
+    close_world(&world);
+    world = open_world(text, &linear);
+    f = &world.scene->film;
+    ok(f->exposure == -1.5 && f->tone.curve == MCR_TONE_LINEAR, "--tone linear does, too");
+    close_world(&world);
+    world = open_world(CAMERA "film { tone aces }\n", NULL);
+    ok(world.scene->film.tone.curve == MCR_TONE_ACES, "aces");
     close_world(&world);
 }
 
@@ -160,6 +184,7 @@ int main(void)
     cameras();
     defaults();
     given();
+    shown();
     replicates();
     return tap_done();
 }

@@ -110,6 +110,7 @@ static void contents(void)
     ok(content(ROOM "sphere { center (0, 0, 3) radius 1 material m }") != plain, "one sphere more is");
     ok(content(CAMERA MATERIALS "sphere { center (0, 0, 3) radius 1.0000000000000002 material m }\nsphere { center (0, 3, 0) radius 1 material lamp }\nrender { }") !=
        plain, "the last bit of a radius is");
+    ok(content(ROOM "film { filter tent exposure 1 tone aces }") == content(ROOM "film { filter tent tone linear }"), "how files of 8 bits look is not");
     ok(content(ROOM "film { filter tent(radius=1) }") != content(ROOM "film { filter tent(radius=2) }"), "arguments of calls are");
 }
 

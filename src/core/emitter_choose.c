@@ -1,0 +1,184 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * Choosing one of many emitters by descending the tree: at each node a child in proportion to its importance, a bound of what its light
+ * brings to the point. Compiled once per instruction set. The eight children of a node lie side by side in a vector; their importances are
+ * added one after the other, so that the bits are the same in any width. Drawing and asking for a probability go the same way.
+ *
+ * One number chooses all the way down, stretched at each node to what is left of it. Its 53 bits tell apart emitters whose probability is
+ * above about 2^-53, however many levels there are; what is below is drawn too seldom or too often by as little.
+ */
+#include "core/emitter_pack.h"
+#include "core/emitter_tree.h"
+
+#include "base/elementary.h"
+
+#define SEEN MCR_ISA_NAME(mcr_emitter_seen)
+
+/*
+ * What of a surface's far side counts. Light from there matters if the material lets it through, which is not known here: it is chosen
+ * seldom where there is light in front as well, but it is chosen.
+ */
+#define BEHIND 0.0625
+
+#define LARGEST_NUMBER (1 - 0x1p-53)
+
+/* A point, and the normal of the surface there; `open` is 1 if there is none, else 0. */
+struct spot {
+    double px, py, pz, nx, ny, nz, open;
+};
+
+static inline struct spot spot_of(const struct mcr_emitter_lanes *points, uint32_t i)
+{
+    struct spot s = {points->px[i], points->py[i], points->pz[i], 0, 0, 0, 1};
+    if (points->nx) {
+        s.nx = points->nx[i], s.ny = points->ny[i], s.nz = points->nz[i];
+        s.open = s.nx == 0 && s.ny == 0 && s.nz == 0 ? 1 : 0;
+    }
+    return s;
+}
+
+/*
+ * Importances of a node's children: power * cosine at the emitters * cosine at the surface / distance^2, each cosine the largest that the
+ * ball and the cone allow, or more. With d from the ball's centre c to the point: some q of the emitters and some n of their normals has
+ * n.(p - q) > 0 only if a.d / |d| + open + lift / |d| > 0; and a part of the ball is in front of the surface only if -n.d / |d| + radius / |d| > 0.
+ * The distance counts as at least the radius.
+ */
+static __attribute__((noinline)) void importances(const struct mcr_emitter_bounds *restrict b, const struct spot *restrict s,
+                                                  double *restrict out)
+{
+    const double px = s->px, py = s->py, pz = s->pz, nx = s->nx, ny = s->ny, nz = s->nz, least = s->open;
+    MCR_LANES
+    for (uint32_t i = 0; i < MCR_TREE_WIDTH; i++) {
+        double dx = px - b->c[0][i], dy = py - b->c[1][i], dz = pz - b->c[2][i], square = dx * dx + dy * dy + dz * dz;
+        double near = b->radius[i] * b->radius[i];
+        near = near < square ? square : near;
+        near = near < 1e-280 ? 1e-280 : near > 1e200 ? 1e200 : near;
+        double inverse = 1 / sqrt(near), sine = b->radius[i] * inverse;
+        double along = (b->axis[0][i] * dx + b->axis[1][i] * dy + b->axis[2][i] * dz) * inverse, over = -b->fold[i] * along;
+        double shines = (along > over ? along : over) + b->open[i] + b->lift[i] * inverse;
+        double faces = -(nx * dx + ny * dy + nz * dz) * inverse, front = sine + faces, back = sine - faces;
+        shines = shines > 1 ? 1 : shines;
+        front = front > 1 ? 1 : front;
+        back = BEHIND * (back > 1 ? 1 : back);
+        double lit = front > back ? front : back;
+        lit = lit > least ? lit : least;
+        int some = (shines > 0) & (square <= b->within[i]);
+        out[i] = some ? b->power[i] * shines * lit * (inverse * inverse) : 0;
+    }
+}
+
+/* Running sums of eight importances; the last is their total. */
+static inline void run(const double importance[MCR_TREE_WIDTH], double sum[MCR_TREE_WIDTH])
+{
+    double total = 0;
+    for (uint32_t i = 0; i < MCR_TREE_WIDTH; i++)
+        sum[i] = total += importance[i];
+}
+
+/* Goes down one level. `number` and `share` are replaced. Returns the child, or INT32_MIN where there is none to choose. */
+static inline int32_t go_down(const struct mcr_emitters *all, int32_t node, const struct spot *spot, double *number, double *share)
+{
+    double importance[MCR_TREE_WIDTH] __attribute__((aligned(64))), sum[MCR_TREE_WIDTH], target;
+    uint32_t child = 0;
+    importances(&all->bounds[node], spot, importance);
+    run(importance, sum);
+    target = *number * sum[MCR_TREE_WIDTH - 1];
+    for (uint32_t i = 0; i + 1 < MCR_TREE_WIDTH; i++)
+        child += sum[i] <= target;
+    while (child > 0 && !(importance[child] > 0)) /* the product was rounded up to the total */
+        child--;
+    if (!(importance[child] > 0))
+        return INT32_MIN;
+    double rest = (target - (child ? sum[child - 1] : 0)) / importance[child];
+    *number = rest < LARGEST_NUMBER ? rest : LARGEST_NUMBER;
+    *share *= importance[child] / sum[MCR_TREE_WIDTH - 1];
+    return all->bounds[node].child[child];
+}
+
+void MCR_ISA_NAME(mcr_emitter_choose)(const struct mcr_emitters *all, const struct mcr_emitter_lanes *points, const double *restrict number,
+                                      struct mcr_emitter_scratch *scratch)
+{
+    struct mcr_emitter_descent *d = &scratch->descent;
+    uint32_t count = points->n;
+    for (uint32_t i = 0; i < count; i++) {
+        double middle = number[i] + 0x1p-54; /* of the interval that the number stands for: 0 is not the least likely of all */
+        d->number[i] = middle < LARGEST_NUMBER ? middle : LARGEST_NUMBER;
+        d->node[i] = 0;
+        d->list[i] = (int32_t)i;
+        scratch->share[i] = 1;
+        scratch->chosen[i] = -1;
+    }
+    while (count > 0) {
+        uint32_t left = 0;
+        for (uint32_t j = 0; j < count; j++) {
+            int32_t i = d->list[j];
+            struct spot spot = spot_of(points, (uint32_t)i);
+            int32_t child = go_down(all, d->node[i], &spot, &d->number[i], &scratch->share[i]);
+            d->node[i] = child;
+            d->list[left] = i;
+            left += child >= 0;
+            scratch->chosen[i] = child < 0 && child != INT32_MIN ? ~child : -1;
+        }
+        count = left;
+    }
+    for (uint32_t i = 0; i < points->n; i++)
+        scratch->share[i] = scratch->chosen[i] < 0 ? 0 : scratch->share[i];
+}
+
+double MCR_ISA_NAME(mcr_emitter_chance)(const struct mcr_emitters *all, const struct mcr_emitter_lanes *points, uint32_t i, uint32_t e)
+{
+    uint64_t path[MCR_TREE_DEPTH], place = all->place[e];
+    uint32_t depth = 0;
+    struct spot spot = spot_of(points, i);
+    double share = 1;
+    for (; place != MCR_TREE_ROOT; place = all->bounds[place >> 3].place)
+        path[depth++] = place;
+    while (depth-- > 0 && share > 0) {
+        double importance[MCR_TREE_WIDTH] __attribute__((aligned(64))), sum[MCR_TREE_WIDTH];
+        importances(&all->bounds[path[depth] >> 3], &spot, importance);
+        run(importance, sum);
+        double own = importance[path[depth] & 7];
+        share = own > 0 ? share * (own / sum[MCR_TREE_WIDTH - 1]) : 0;
+    }
+    return share;
+}
+
+/* Everything below the root whose importance is not 0, depth first. */
+static double mass_at(const struct mcr_emitters *all, const struct mcr_emitter_lanes *points, uint32_t lane)
+{
+    struct {
+        double share;
+        int32_t node;
+    } stack[MCR_TREE_DEPTH * MCR_TREE_WIDTH];
+    struct spot spot = spot_of(points, lane);
+    uint32_t depth = 1;
+    double mass = 0, seen;
+    const struct mcr_emitter_lanes one = {.n = 1, .px = &spot.px, .py = &spot.py, .pz = &spot.pz, .distance = &seen};
+    stack[0].share = 1;
+    stack[0].node = 0;
+    while (depth > 0) {
+        double importance[MCR_TREE_WIDTH] __attribute__((aligned(64))), sum[MCR_TREE_WIDTH], share = stack[--depth].share;
+        const struct mcr_emitter_bounds *node = &all->bounds[stack[depth].node];
+        importances(node, &spot, importance);
+        run(importance, sum);
+        for (uint32_t i = 0; i < node->count; i++) {
+            double part = importance[i] > 0 ? share * (importance[i] / sum[MCR_TREE_WIDTH - 1]) : 0;
+            if (!(part > 0))
+                continue;
+            if (node->child[i] >= 0) {
+                stack[depth].share = part;
+                stack[depth++].node = node->child[i];
+                continue;
+            }
+            SEEN(all, (uint32_t)~node->child[i], &one);
+            mass += seen > 0 ? part : 0;
+        }
+    }
+    return mass < 1 ? mass : 1;
+}
+
+void MCR_ISA_NAME(mcr_emitter_tree_mass)(const struct mcr_emitters *all, const struct mcr_emitter_lanes *points, double *mass)
+{
+    for (uint32_t i = 0; i < points->n; i++)
+        mass[i] = mass_at(all, points, i);
+}
