@@ -36,8 +36,10 @@ _mcrender()
     --sampler) mapfile -t COMPREPLY < <(compgen -W "$(_mcrender_words "$program")" -- "$word"); return ;;
     --plugin) mapfile -t COMPREPLY < <(compgen -f -X '!*.so' -- "$word"; compgen -d -- "$word"); return ;;
     -o | --report) mapfile -t COMPREPLY < <(compgen -f -- "$word"); return ;;
+    --tone) mapfile -t COMPREPLY < <(compgen -W 'linear reinhard hable aces' -- "$word"); return ;;
+    --layers) mapfile -t COMPREPLY < <(compgen -W 'variance albedo normal depth id direct indirect' -- "$word"); return ;;
     --roulette) mapfile -t COMPREPLY < <(compgen -W 'on off' -- "$word"); return ;;
-    --spp | --depth | --seed | --threads | --size | --crop | --batch | --set | --exposure | --tone) return ;;
+    --spp | --depth | --seed | --threads | --size | --crop | --batch | --set | --exposure) return ;;
     esac
     if [ "$command" = compare ]; then
         _mcrender_compare "$program" "$word" "$before"

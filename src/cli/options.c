@@ -6,6 +6,7 @@
 
 #include "base/cpu.h"
 #include "cli/arguments.h"
+#include "cli/layers.h"
 
 enum option_id {
     OUTPUT, SPP, DEPTH, SEED, THREADS, SAMPLER, SIZE, CROP, PRECISION, ACCEL, ISA, BATCH, REPLICATES, ROULETTE, COMPAT, SET, PLUGIN, LAYERS, REPORT,
@@ -37,7 +38,7 @@ static const struct option {
     {COMPAT, RENDER | CHECK, "--compat", "LIST", "known mistakes"},
     {SET, RENDER | CHECK | STUDY, "--set", "NAME=VALUE", "replaces a `let`"},
     {PLUGIN, ALL, "--plugin", "FILE", "before all others"},
-    {LAYERS, RENDER, "--layers", "variance", "in EXR"},
+    {LAYERS, RENDER, "--layers", "LIST", "more, in EXR"},
     {REPORT, RENDER, "--report", "FILE", "figures as JSON"},
     {PROFILE, RENDER, "--profile", NULL, "time of each stage"},
     {BITS, RENDER, "--bits", "8|16", "of PPM, PNG, TIFF"},
@@ -156,7 +157,6 @@ static int take_compat(struct mcr_overrides *o, const char *text)
 static int take(struct mcr_options *options, const struct option *option, const char *text)
 {
     static const char *const precisions[] = {"double", "single"}, *const accels[] = {"auto", "list", "bvh", "embree"};
-    static const char *const layers[] = {"variance"};
     struct mcr_overrides *o = &options->overrides;
     uint32_t chosen;
     switch (option->id) {
@@ -204,8 +204,11 @@ static int take(struct mcr_options *options, const struct option *option, const 
     case COMPAT:
         return take_compat(o, text);
     case LAYERS:
-        options->variance_layer = o->channel_variance = 1;
-        return mcr_argument_word("--layers", text, layers, 1, 1, &chosen);
+        if (mcr_layers_parse(text, &options->layers))
+            return MCR_EXIT_USAGE;
+        options->variance_layer = o->channel_variance = (options->layers & MCR_LAYER_VARIANCE) != 0;
+        o->layer_bytes = mcr_features_bytes(mcr_layers_features(options->layers));
+        return 0;
     case SET:
         return take_set(options, text);
     case PLUGIN:

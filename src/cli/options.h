@@ -28,7 +28,8 @@ struct mcr_options {
     uint32_t plugin_count;
     struct mcr_overrides overrides;
     const char *report;
-    int variance_layer;                           /* --layers variance */
+    uint32_t layers;                              /* MCR_LAYER_* */
+    int variance_layer;                           /* variance is among them */
     uint32_t isa;
     uint32_t bits;
     int quiet, werror, profile;

@@ -7,6 +7,7 @@
 
 #include "base/cpu.h"
 #include "cli/commands.h"
+#include "cli/layers.h"
 #include "cli/report.h"
 #include "cli/stop.h"
 #include "image/format.h"
@@ -91,14 +92,28 @@ static int targets_open(struct targets *targets, const struct mcr_report_data *d
     return status;
 }
 
-#define ATTRIBUTES 13
+#define ATTRIBUTES 14
 
 /* What a file says of its picture. */
 struct metadata {
-    uint32_t count; /* of those that all files have; one more follows */
+    uint32_t count; /* of those that all files have */
+    uint32_t more;  /* behind them, of files with layers */
+    char *materials; /* owned; NULL */
     struct mcr_attribute attribute[ATTRIBUTES];
     char hash[20], spp[12], depth[12], seed[24], samples[24], units[12], compat[MCR_COMPAT_TEXT];
 };
+
+/* In the order of their numbers in the layer `id`, with blanks between them. NULL when memory is short. */
+static char *material_names(const struct mcr_scene *scene)
+{
+    size_t length = 1;
+    for (uint32_t m = 0; m < scene->material_count; m++)
+        length += strlen(scene->material[m].name) + 1;
+    char *text = calloc(length, 1), *at = text;
+    for (uint32_t m = 0; text && m < scene->material_count; m++)
+        at += sprintf(at, "%s%s", m ? " " : "", scene->material[m].name);
+    return text;
+}
 
 static void describe(struct metadata *meta, const struct mcr_report_data *data)
 {
@@ -129,44 +144,12 @@ static void describe(struct metadata *meta, const struct mcr_report_data *data)
         meta->attribute[meta->count++] = (struct mcr_attribute){"mcrender:biased", "true"};
         meta->attribute[meta->count++] = (struct mcr_attribute){"mcrender:compat", meta->compat};
     }
-    meta->attribute[meta->count] = (struct mcr_attribute){"mcrender:units", meta->units}; /* for files with the variance layer */
-}
-
-#define LAYER_CHANNELS 7u
-
-/* The variance of the mean in R, G, B and luminance, behind the mean. Returns 0, or -1 when memory is short. */
-static int fill_variance(const struct mcr_film *film, double *channel)
-{
-    double *rgb = calloc(film->pixels, 3 * sizeof *rgb), *luminance = calloc(film->pixels, sizeof *luminance);
-    int status = rgb && luminance ? 0 : -1;
-    if (!status && !mcr_film_channel_variance(film, rgb) && !mcr_film_variance(film, luminance))
-        for (uint64_t p = 0; p < film->pixels; p++) {
-            memcpy(channel + LAYER_CHANNELS * p + 3, rgb + 3 * p, 3 * sizeof *rgb);
-            channel[LAYER_CHANNELS * p + 6] = luminance[p];
-        }
-    free(rgb);
-    free(luminance);
-    return status;
-}
-
-/* The film's mean, and its variance where that is asked for and known. NULL when memory is short. */
-static struct mcr_image *develop(const struct mcr_film *film)
-{
-    static const char *const names[LAYER_CHANNELS] = {"R", "G", "B", "variance.R", "variance.G", "variance.B", "variance.Y"};
-    struct mcr_image *image = mcr_image_create(film->width, film->height, 3, names), *all;
-    if (image)
-        mcr_film_mean(film, image->data);
-    if (!image || !film->channels || film->units < 2)
-        return image;
-    all = mcr_image_create(film->width, film->height, LAYER_CHANNELS, names);
-    for (uint64_t p = 0; all && p < film->pixels; p++)
-        memcpy(all->data + LAYER_CHANNELS * p, image->data + 3 * p, 3 * sizeof *image->data);
-    mcr_image_destroy(image);
-    if (all && fill_variance(film, all->data)) {
-        mcr_image_destroy(all);
-        return NULL;
-    }
-    return all;
+    meta->more = 0;
+    if (data->options->variance_layer && data->film->units > 1)
+        meta->attribute[meta->count + meta->more++] = (struct mcr_attribute){"mcrender:units", meta->units};
+    meta->materials = data->options->layers & MCR_LAYER_ID ? material_names(scene) : NULL;
+    if (meta->materials)
+        meta->attribute[meta->count + meta->more++] = (struct mcr_attribute){"mcrender:materials", meta->materials};
 }
 
 /* 1 or 0; -1 where the file's format cannot be written at all. */
@@ -180,7 +163,7 @@ static int holds_layers(const char *path)
 static int write_all(struct mcr_report_data *data, struct targets *targets)
 {
     struct metadata meta;
-    struct mcr_image *image = develop(data->film);
+    struct mcr_image *image = mcr_layers_image(data->film, data->features, data->options->layers);
     int status = MCR_EXIT_DONE;
     if (!image) {
         fputs("mcrender: error: out of memory\n", stderr);
@@ -191,8 +174,8 @@ static int write_all(struct mcr_report_data *data, struct targets *targets)
                                         data->loaded->scene->film.tone};
     for (uint32_t i = 0; i < data->output_count; i++) {
         struct mcr_report_output *output = &data->output[i];
-        output->layers = image->channels == LAYER_CHANNELS && holds_layers(output->path) > 0;
-        options.attribute_count = meta.count + (output->layers ? 1 : 0);
+        output->layers = image->channels > 3 && holds_layers(output->path) > 0;
+        options.attribute_count = meta.count + (output->layers ? meta.more : 0);
         output->failed = mcr_target_write(targets->target[i], image, &options, &output->result) != 0;
         targets->target[i] = NULL;
         if (output->failed) {
@@ -201,6 +184,7 @@ static int write_all(struct mcr_report_data *data, struct targets *targets)
         }
     }
     mcr_image_destroy(image);
+    free(meta.materials);
     return status;
 }
 
@@ -231,6 +215,11 @@ static int render(struct mcr_report_data *data, struct mcr_film *film, struct ta
     struct mcr_render_options how = {.isa = data->options->isa, .profile = data->options->profile, .stop = &mcr_stop_asked};
     struct mcr_cell_sink sink = mcr_film_sink(film);
     char reason[512];
+    if (data->features) {
+        how.features = data->features->asked;
+        sink.add_features = mcr_features_add;
+        sink.features = data->features;
+    }
     data->stats = &stats;
     mcr_coverage(data->loaded->scene, &data->coverage);
     if (isatty(STDERR_FILENO) && !data->options->quiet)
@@ -257,7 +246,7 @@ static int render(struct mcr_report_data *data, struct mcr_film *film, struct ta
 }
 
 /*
- * Whether the variance layer that was asked for can be had: some file must hold it, and the samples must tell it. What is known before the first ray is
+ * Whether the layers that were asked for can be had: some file must hold them, and the samples must tell the variance. What is known before the first ray is
  * told then. Returns an exit status.
  */
 static int check_layers(const struct mcr_report_data *data)
@@ -265,12 +254,14 @@ static int check_layers(const struct mcr_report_data *data)
     const struct mcr_scene *scene = data->loaded->scene;
     const struct mcr_render_settings *render = &scene->render;
     int held = 0;
-    if (!data->options->variance_layer)
+    if (!data->options->layers)
         return MCR_EXIT_DONE;
     for (uint32_t i = 0; i < data->output_count; i++)
         held |= holds_layers(data->output[i].path); /* a format that cannot be written is told when the targets are opened */
     if (!held)
-        fprintf(stderr, "mcrender: error: --layers variance: '%s' cannot hold layers, .exr can\n", data->output[0].path);
+        fprintf(stderr, "mcrender: error: --layers: '%s' cannot hold layers, .exr can\n", data->output[0].path);
+    else if (!data->options->variance_layer)
+        return MCR_EXIT_DONE;
     else if (scene->sampler->correlated && render->replicates < 2)
         fputs("mcrender: error: --layers variance: the numbers are correlated, and their variance is known from 2 replicates on (--replicates 2)\n", stderr);
     else if (!scene->sampler->correlated && render->spp < 2)
@@ -293,15 +284,18 @@ static int prepare_and_render(struct mcr_report_data *data, struct targets *targ
     double start = mcr_wall_seconds();
     struct mcr_film *film = mcr_film_create(film_settings->x1 - film_settings->x0, film_settings->y1 - film_settings->y0,
                                             loaded->scene->sampler->correlated);
+    uint32_t features = mcr_layers_features(data->options->layers);
     data->film = film;
+    data->features = film && features ? mcr_features_create(film->pixels, features) : NULL;
     data->accel = mcr_accel_create(loaded->arena, loaded->scene, loaded->scene->render.accel);
     data->accel_seconds = mcr_wall_seconds() - start;
-    if (data->accel && film && (!data->options->variance_layer || !mcr_film_keep_channels(film))) {
+    if (data->accel && film && (data->features || !features) && (!data->options->variance_layer || !mcr_film_keep_channels(film))) {
         status = render(data, film, targets);
     } else {
         fputs("mcrender: error: out of memory\n", stderr);
         status = MCR_EXIT_FAILED;
     }
+    mcr_features_destroy(data->features);
     mcr_film_destroy(film);
     return status;
 }

@@ -5,19 +5,21 @@
 
 #include "cli/load.h"
 #include "core/core.h"
+#include "film/features.h"
 #include "film/film.h"
 
 struct mcr_report_output {
     const char *path;
     struct mcr_write_result result;
     int failed;
-    int layers;             /* it holds the variance layer */
+    int layers;             /* it holds layers */
 };
 
 struct mcr_report_data {
     const struct mcr_options *options;
     struct mcr_loaded_scene *loaded;
     const struct mcr_accel *accel;
+    struct mcr_features *features; /* NULL: no layer needs them */
     const struct mcr_render_stats *stats;
     const struct mcr_film *film;
     struct mcr_film_figures figures;

@@ -127,6 +127,21 @@ static void cut_crossing(struct cutter *c, struct mcr_batch *b)
     b->crossing = cut(c, b->lanes, sizeof *b->crossing);
 }
 
+static void *cut_feature(void *cutter, size_t count, size_t size)
+{
+    return cut(cutter, count, size);
+}
+
+/* Arrays for point lights. */
+static void cut_point(struct cutter *c, struct mcr_point_lanes *p, uint32_t lanes)
+{
+    double **array[] = {&p->number, &p->wx, &p->wy, &p->wz, &p->er, &p->eg, &p->eb, &p->far, &p->fr,    &p->fg,
+                        &p->fb,     &p->ox, &p->oy, &p->oz, &p->dx, &p->dy, &p->dz, &p->length, &p->seen};
+    for (size_t i = 0; i < sizeof array / sizeof *array; i++)
+        *array[i] = cut(c, lanes, sizeof(double));
+    p->lane = cut(c, lanes, sizeof *p->lane);
+}
+
 static void cut_all(struct cutter *c, struct mcr_batch *b)
 {
     const struct mcr_core *core = b->core;
@@ -168,6 +183,8 @@ static void cut_all(struct cutter *c, struct mcr_batch *b)
     b->slot_r = cut(c, (size_t)MCR_JOBS * MCR_JOB_SLOTS, sizeof(double));
     b->slot_g = cut(c, (size_t)MCR_JOBS * MCR_JOB_SLOTS, sizeof(double));
     b->slot_b = cut(c, (size_t)MCR_JOBS * MCR_JOB_SLOTS, sizeof(double));
+    if (core->features)
+        mcr_features_cut(b, cut_feature, c);
     if (core->scene->film.filter_edge)
         b->slot_weight = cut(c, (size_t)MCR_JOBS * MCR_JOB_SLOTS, sizeof(double));
     if (core->scene->render.compat & MCR_COMPAT_CLAMP) {
@@ -192,6 +209,8 @@ static void cut_all(struct cutter *c, struct mcr_batch *b)
     }
     if (core->lobes)
         cut_lobes(c, &b->lobe, b->lanes);
+    if (core->point_lights)
+        cut_point(c, &b->point, b->lanes);
     b->scratch = cut(c, core->scratch_bytes, 1);
 }
 

@@ -14,6 +14,9 @@
 #include "base/lanes.h"
 #include "core/core.h"
 #include "core/emitters.h"
+#include "core/features.h"
+#include "core/point_lights.h"
+#include "core/sky.h"
 
 /*
  * A ray starts off its surface, on the side it leaves to, by MCR_OFFSET max(|p|, |o|, |c|, R): p the point, o the origin of the ray that found it,
@@ -29,6 +32,7 @@
 #define MCR_DIMENSION_LENS 2u
 #define MCR_DIMENSION_SAMPLER 8u
 #define MCR_DIMENSION_MATERIAL 28u /* of bounce 0: 8 + 20 */
+#define MCR_DIMENSION_LIGHT 24u    /* of bounce 0: 8 + 16 */
 #define MCR_DIMENSION_ROULETTE 32u /* of bounce 0: 8 + 24 */
 
 #define MCR_INTERIORS 4u /* interiors that a path remembers being in: see crossing.h */
@@ -131,6 +135,11 @@ struct mcr_core {
     const struct mcr_stages *stages;
     struct mcr_emitters *emitters;
     const struct mcr_emitter_functions *lights;
+    const struct mcr_sky *sky;      /* NULL: nothing but the background comes from infinitely far */
+    const struct mcr_sky_functions *sky_functions;
+    int32_t sky_emitter;            /* its number as an emitter, or -1 */
+    double sky_share;               /* the probability with which it is chosen */
+    const struct mcr_point_lights *point_lights; /* NULL: there are none */
     struct mcr_surfaces surfaces;
     struct mcr_charts charts;
     uint32_t group_count;
@@ -148,7 +157,8 @@ struct mcr_core {
     uint32_t continuing;            /* the sampler's technique that continues paths */
     int combines;                   /* it has more than one technique */
     int lobes;                      /* some group has mirror-like lobes */
-    int background;                 /* it is not black */
+    int background;                 /* it is not black, or there is a sky */
+    uint32_t features;              /* MCR_FEATURE_*, 0: none */
     uint64_t scratch_bytes;         /* for all nested operations of one thread */
     int needs_samples;              /* a number source other than `independent` is there */
     int needs_pixel;                /* one of them asks for the pixel */
@@ -174,6 +184,17 @@ struct mcr_range {
     uint32_t group, begin, end;     /* points begin .. end-1; begin is a multiple of MCR_LANE_PAD */
     uint32_t roulette;              /* a multiple of it: points before this are safe from roulette; only some behind it need not be */
     int ends;                       /* these paths emit and end */
+};
+
+/* For src/core/point_lights.c: arrays of one lane each, there only where the scene has such lights. Lanes are those of points, then compact ones. */
+struct mcr_point_lanes {
+    double *number;                /* chooses the light */
+    double *wx, *wy, *wz;          /* toward it; 0 where none was chosen */
+    double *er, *eg, *eb;          /* its irradiance on a surface that faces it, over the probability of the choice */
+    double *far;                   /* its distance */
+    double *fr, *fg, *fb;
+    double *ox, *oy, *oz, *dx, *dy, *dz, *length, *seen; /* compact */
+    uint32_t *lane;
 };
 
 /* A block of cells of the running pass that is being rendered: a place in the ring of slots. */
@@ -278,6 +299,7 @@ struct mcr_batch {
     struct mcr_lobes lobe;
     struct mcr_crossing *crossing;  /* capacity */
     struct mcr_crossing_lanes crossing_lanes;
+    struct mcr_point_lanes point;
     double *lane_input;             /* channels * lanes: inputs that vary from lane to lane, of all ranges */
     struct mcr_elsewhere elsewhere;
     struct mcr_texture_lanes textures; /* NULL without textures */
@@ -285,6 +307,7 @@ struct mcr_batch {
     const double **channel;         /* the pointers handed to plugins */
     uint32_t *stride;
     double *slot_r, *slot_g, *slot_b;
+    struct mcr_feature_slots features; /* there only where features are asked for */
     double *slot_weight;            /* what a sample counts in its pixel; NULL where the film's filter gives all the same */
     double *cap_r, *cap_g, *cap_b;  /* by slot; NULL without compat clamp: see compat.h */
     struct mcr_job *job;
@@ -314,6 +337,7 @@ struct mcr_camera_lanes {
     const double *const *film;      /* 2 arrays */
     const double *const *lens;      /* 2 arrays, or NULL */
     double *ox, *oy, *oz, *dx, *dy, *dz;
+    double *distance;               /* from the pixel's centre, squared, in pixels; NULL: nobody asks */
     double *weight;                 /* of the samples; NULL: the filter gives all the same */
 };
 

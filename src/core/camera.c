@@ -146,6 +146,8 @@ void MCR_ISA_NAME(mcr_stage_camera)(const struct mcr_scene *scene, const struct 
     for (uint32_t first = 0; first < lanes->n; first += BLOCK) {
         uint32_t n = lanes->n - first < BLOCK ? lanes->n - first : BLOCK;
         block_filter(film, n, lanes->film[0] + first, lanes->film[1] + first, x, y, lanes->weight ? lanes->weight + first : NULL);
+        for (uint32_t i = 0; i < n && lanes->distance; i++)
+            lanes->distance[first + i] = x[i] * x[i] + y[i] * y[i];
         MCR_LANES
         for (uint32_t i = 0; i < n; i++) {
             x[i] = (lanes->x[first + i] + 0.5 + x[i] - half_width) * step;

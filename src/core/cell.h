@@ -31,6 +31,8 @@ void mcr_cell_sum(const double *r, const double *g, const double *b, uint32_t co
 void mcr_cell_channel_moments(const double *r, const double *g, const double *b, uint32_t count, const struct mcr_cell *cell,
                               struct mcr_cell_channels *channels);
 
+struct mcr_cell_features; /* features.h */
+
 /*
  * Who takes the cells: the film, or whoever else wants them. Called on the main thread between passes, in the order of the samples.
  * Functions return 0, or -1 when memory is short.
@@ -43,6 +45,9 @@ struct mcr_cell_sink {
     void (*end_replicate)(void *data);
     /* Not NULL: called in the place of `add`, with the moments of the channels, which are computed for it only. */
     int (*add_channels)(void *data, const struct mcr_cell *cell, const struct mcr_cell_channels *channels, uint32_t count);
+    /* Not NULL where features are asked for: called after either, of the same samples. */
+    int (*add_features)(void *data, const struct mcr_cell_features *features, uint32_t count);
+    void *features; /* its data */
 };
 
 #endif

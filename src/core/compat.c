@@ -2,6 +2,7 @@
 #include "core/compat.h"
 
 #include <math.h>
+#include <string.h>
 
 /* The rays that stay move up. */
 static void keep(struct mcr_batch *batch, uint32_t to, uint32_t from)
@@ -16,11 +17,17 @@ static void keep(struct mcr_batch *batch, uint32_t to, uint32_t from)
 }
 
 /* The background for the path in lane l, with the weight of a miss: of the directions' techniques alone (light.c). */
-static void see_background(struct mcr_batch *batch, uint32_t l)
+static void see_background(struct mcr_batch *batch, uint32_t j, uint32_t l)
 {
-    const double *radiance = batch->core->scene->render.background, *own = batch->light.own, *others = batch->light.others;
+    const struct mcr_core *core = batch->core;
+    double radiance[3];
+    const double *own = batch->light.own, *others = batch->light.others;
     const struct mcr_paths *paths = &batch->state;
     const uint32_t slot = paths->slot[l];
+    if (core->sky)
+        core->sky_functions->radiance(core->sky, 1, &batch->rdx[j], &batch->rdy[j], &batch->rdz[j], &radiance[0], &radiance[1], &radiance[2]);
+    else
+        memcpy(radiance, core->scene->render.background, sizeof radiance);
     double share = batch->core->combines && l < batch->points ? own[l] / (own[l] + others[l]) : 1;
     batch->slot_r[slot] += paths->r[l] * radiance[0] * share;
     batch->slot_g[slot] += paths->g[l] * radiance[1] * share;
@@ -48,7 +55,7 @@ void mcr_compat_end_rays(struct mcr_batch *batch)
             continue;
         }
         if (!black)
-            see_background(batch, l);
+            see_background(batch, j, l);
         if (paths->bounce[l])
             batch->bounce_rays--;
         else

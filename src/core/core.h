@@ -12,6 +12,7 @@
 
 #include "accel/accel.h"
 #include "core/cell.h"
+#include "core/features.h"
 #include "scene/scene.h"
 
 /* The stages, in the order in which a batch goes through them; indices of mcr_render_stats.stage_seconds. */
@@ -35,6 +36,7 @@ extern const char *const mcr_stage_name[MCR_STAGE_COUNT];
 struct mcr_render_options {
     uint32_t isa;                            /* MCR_ISA_*, not above what the processor has */
     int profile;                             /* time the stages */
+    uint32_t features;                       /* MCR_FEATURE_* that the sink's add_features takes; 0 */
     const volatile sig_atomic_t *stop;       /* not 0: end after the running pass. May be NULL */
     void (*progress)(void *data, double done, double seconds); /* done in [0,1]; called now and then on the main thread. May be NULL */
     void *progress_data;

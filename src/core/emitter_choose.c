@@ -46,24 +46,28 @@ static inline struct spot spot_of(const struct mcr_emitter_lanes *points, uint32
 static __attribute__((noinline)) void importances(const struct mcr_emitter_bounds *restrict b, const struct spot *restrict s,
                                                   double *restrict out)
 {
+    const double *restrict cx = b->c[0], *restrict cy = b->c[1], *restrict cz = b->c[2], *restrict radius = b->radius;
+    const double *restrict ax = b->axis[0], *restrict ay = b->axis[1], *restrict az = b->axis[2], *restrict open = b->open;
+    const double *restrict lift = b->lift, *restrict fold = b->fold, *restrict within = b->within, *restrict power = b->power;
     const double px = s->px, py = s->py, pz = s->pz, nx = s->nx, ny = s->ny, nz = s->nz, least = s->open;
     MCR_LANES
     for (uint32_t i = 0; i < MCR_TREE_WIDTH; i++) {
-        double dx = px - b->c[0][i], dy = py - b->c[1][i], dz = pz - b->c[2][i], square = dx * dx + dy * dy + dz * dz;
-        double near = b->radius[i] * b->radius[i];
+        double dx = px - cx[i], dy = py - cy[i], dz = pz - cz[i], square = dx * dx + dy * dy + dz * dz;
+        double near = radius[i] * radius[i], reach = within[i];
         near = near < square ? square : near;
         near = near < 1e-280 ? 1e-280 : near > 1e200 ? 1e200 : near;
-        double inverse = 1 / sqrt(near), sine = b->radius[i] * inverse;
-        double along = (b->axis[0][i] * dx + b->axis[1][i] * dy + b->axis[2][i] * dz) * inverse, over = -b->fold[i] * along;
-        double shines = (along > over ? along : over) + b->open[i] + b->lift[i] * inverse;
+        double inverse = 1 / sqrt(near), sine = radius[i] * inverse;
+        double along = (ax[i] * dx + ay[i] * dy + az[i] * dz) * inverse, over = -fold[i] * along;
+        double shines = (along > over ? along : over) + open[i] + lift[i] * inverse;
         double faces = -(nx * dx + ny * dy + nz * dz) * inverse, front = sine + faces, back = sine - faces;
         shines = shines > 1 ? 1 : shines;
         front = front > 1 ? 1 : front;
         back = BEHIND * (back > 1 ? 1 : back);
         double lit = front > back ? front : back;
         lit = lit > least ? lit : least;
-        int some = (shines > 0) & (square <= b->within[i]);
-        out[i] = some ? b->power[i] * shines * lit * (inverse * inverse) : 0;
+        shines = shines > 0 ? shines : 0;
+        shines = square <= reach ? shines : 0;
+        out[i] = power[i] * shines * lit * (inverse * inverse);
     }
 }
 

@@ -335,7 +335,7 @@ static void set_child(struct builder *b, uint32_t node, uint32_t slot, const str
 {
     struct mcr_emitter_node *box = &b->node[node];
     struct mcr_emitter_bounds *to = &b->bounds[node];
-    double half[3], most = 0, along = 0, sine, cosine, chord, slack;
+    double half[3], most = 0, along = 0, off = 0, sine, cosine, chord, slack;
     for (int i = 0; i < 3; i++) {
         box->lo[i][slot] = light->lo[i];
         box->hi[i][slot] = light->hi[i];
@@ -352,7 +352,9 @@ static void set_child(struct builder *b, uint32_t node, uint32_t slot, const str
     mcr_sincos_turns(light->angle / (2 * MCR_PI), &sine, &cosine);
     chord = sqrt(2 * fmax(0, 1 - cosine)); /* how far normals are from the axis */
     to->radius[slot] = radius;
-    to->lift[slot] = alone && is_flat(alone->kind) ? slack : fmin(radius, along + chord * radius + slack);
+    for (int i = 0; i < 3; i++) /* the middle of a triangle's box is not in its plane */
+        off += light->axis[i] * (to->c[i][slot] - k[MCR_K_C + i]);
+    to->lift[slot] = alone && is_flat(alone->kind) ? fabs(off) + slack : fmin(radius, along + chord * radius + slack);
     to->open[slot] = (light->angle < 0.5 * MCR_PI ? sine : 1 - cosine) + MCR_TREE_GRACE;
     to->fold[slot] = light->folds ? 1 : -1;
     to->within[slot] = light->inner ? radius * radius * (1 + MCR_TREE_GRACE) : INFINITY;

@@ -22,11 +22,13 @@ struct ray {
 static __attribute__((noinline)) void cross_boxes(const struct mcr_emitter_node *restrict node, const struct ray *restrict ray,
                                                   double *restrict flag)
 {
+    const double *restrict lx = node->lo[0], *restrict ly = node->lo[1], *restrict lz = node->lo[2];
+    const double *restrict hx = node->hi[0], *restrict hy = node->hi[1], *restrict hz = node->hi[2];
     const double px = ray->px, py = ray->py, pz = ray->pz, ix = ray->ix, iy = ray->iy, iz = ray->iz;
     MCR_LANES
     for (uint32_t i = 0; i < MCR_TREE_WIDTH; i++) {
-        double x0 = (node->lo[0][i] - px) * ix, x1 = (node->hi[0][i] - px) * ix, y0 = (node->lo[1][i] - py) * iy;
-        double y1 = (node->hi[1][i] - py) * iy, z0 = (node->lo[2][i] - pz) * iz, z1 = (node->hi[2][i] - pz) * iz;
+        double x0 = (lx[i] - px) * ix, x1 = (hx[i] - px) * ix, y0 = (ly[i] - py) * iy;
+        double y1 = (hy[i] - py) * iy, z0 = (lz[i] - pz) * iz, z1 = (hz[i] - pz) * iz;
         double nx = x0 < x1 ? x0 : x1, fx = x0 < x1 ? x1 : x0, ny = y0 < y1 ? y0 : y1, fy = y0 < y1 ? y1 : y0;
         double nz = z0 < z1 ? z0 : z1, fz = z0 < z1 ? z1 : z0;
         int apart = (nx > fy) | (nx > fz) | (ny > fx) | (ny > fz) | (nz > fx) | (nz > fy) | (fx < 0) | (fy < 0) | (fz < 0);

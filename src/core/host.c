@@ -2,6 +2,8 @@
 /* The services that plugins call while they run, and the calls into a sampler's nodes. A batch belongs to one thread, so nothing is locked. */
 #include "core/host.h"
 
+#include "core/lights.h"
+
 #include <stdio.h>
 #include <string.h>
 
@@ -147,9 +149,9 @@ static int32_t child_mass(const struct mcr_host *host, struct mcr_context *conte
 #define WITH_LIGHTS(CALL)                                                                               \
     struct mcr_batch *batch = batch_of(context);                                                        \
     const struct mcr_core *core = batch->core;                                                          \
-    struct frame was = enter(batch, context->node, mcr_emitters_scratch(core->emitters, at->n));        \
+    struct frame was = enter(batch, context->node, mcr_lights_scratch(core, at->n));        \
     (void)host;                                                                                         \
-    core->lights->CALL;                                                                                 \
+    CALL;                                                                                 \
     return leave(batch, &was, MCR_OK)
 
 static int32_t light_draw(const struct mcr_host *host, struct mcr_context *context, uint32_t by, const struct mcr_points *at,
@@ -158,7 +160,7 @@ static int32_t light_draw(const struct mcr_host *host, struct mcr_context *conte
     batch_of(context)->kept_at = at->px;
     batch_of(context)->kept_by = by;
     batch_of(context)->kept_n = at->n;
-    WITH_LIGHTS(draw(core->emitters, context->scratch, by, at, number, out, density, batch->kept));
+    WITH_LIGHTS(mcr_lights_draw(core, context->scratch, by, at, number, out, density, batch->kept));
 }
 
 static int32_t light_density(const struct mcr_host *host, struct mcr_context *context, uint32_t by, const struct mcr_points *at,
@@ -166,24 +168,24 @@ static int32_t light_density(const struct mcr_host *host, struct mcr_context *co
 {
     const struct mcr_batch *b = batch_of(context);
     const double *kept = b->kept_at == at->px && b->kept_n == at->n && b->kept_by == by ? b->kept : NULL;
-    WITH_LIGHTS(density(core->emitters, context->scratch, by, at, toward, kept, density));
+    WITH_LIGHTS(mcr_lights_density(core, context->scratch, by, at, toward, kept, density));
 }
 
 static int32_t light_mass(const struct mcr_host *host, struct mcr_context *context, uint32_t by, const struct mcr_points *at, double *mass)
 {
-    WITH_LIGHTS(mass(core->emitters, context->scratch, by, at, mass));
+    WITH_LIGHTS(mcr_lights_mass(core, context->scratch, by, at, mass));
 }
 
 static int32_t light_draw_point(const struct mcr_host *host, struct mcr_context *context, uint32_t by, const struct mcr_points *at,
                                 const double *const *number, const struct mcr_emitter_points *out, double *density)
 {
-    WITH_LIGHTS(draw_point(core->emitters, context->scratch, by, at, number, out, density));
+    WITH_LIGHTS(mcr_lights_draw_point(core, context->scratch, by, at, number, out, density));
 }
 
 static int32_t light_density_point(const struct mcr_host *host, struct mcr_context *context, uint32_t by, const struct mcr_points *at,
                                    const struct mcr_emitter_points *points, double *density)
 {
-    WITH_LIGHTS(density_point(core->emitters, context->scratch, by, at, points, density));
+    WITH_LIGHTS(mcr_lights_density_point(core, context->scratch, by, at, points, density));
 }
 
 /* The range that a sampler works on is one group, so that its material can be asked at once. */
@@ -342,6 +344,27 @@ int32_t mcr_group_density(struct mcr_batch *batch, const struct mcr_range *range
     return leave(batch, &was, status);
 }
 
+int32_t mcr_group_draw(struct mcr_batch *batch, const struct mcr_range *range, const double *const *number, const struct mcr_directions *out,
+                       double *density)
+{
+    const struct mcr_group *group = &batch->core->group[range->group];
+    struct mcr_points at = mcr_batch_points(batch, range->begin, range->end);
+    struct mcr_inputs inputs = mcr_group_inputs(batch, group, batch->at.material, range->begin, range->end);
+    struct frame was = enter(batch, group->node, mcr_material_bytes(group, at.n));
+    int32_t status = group->plugin->draw(&batch->core->host, &batch->context, group->instance, &inputs, &at, number, out, density);
+    return leave(batch, &was, status);
+}
+
+int32_t mcr_group_albedo(struct mcr_batch *batch, const struct mcr_range *range, const struct mcr_colours *out)
+{
+    const struct mcr_group *group = &batch->core->group[range->group];
+    struct mcr_points at = mcr_batch_points(batch, range->begin, range->end);
+    struct mcr_inputs inputs = mcr_group_inputs(batch, group, batch->at.material, range->begin, range->end);
+    struct frame was = enter(batch, group->node, mcr_material_bytes(group, at.n));
+    int32_t status = group->plugin->albedo(&batch->core->host, &batch->context, group->instance, &inputs, &at, out);
+    return leave(batch, &was, status);
+}
+
 int32_t mcr_group_delta(struct mcr_batch *batch, const struct mcr_range *range, const double *const *number, const struct mcr_directions *out,
                         double *probability, const struct mcr_colours *weight)
 {
@@ -485,7 +508,7 @@ uint64_t mcr_host_scratch(const struct mcr_core *core)
         uint64_t bytes = plugin->scratch_bytes ? padded(plugin->scratch_bytes(node->instance, core->capacity)) : 0;
         sources = bytes > sources ? bytes : sources;
     }
-    return tree_bytes(sampler->directions, core->capacity) + padded(mcr_emitters_scratch(core->emitters, core->capacity)) + most + sources;
+    return tree_bytes(sampler->directions, core->capacity) + padded(mcr_lights_scratch(core, core->capacity)) + most + sources;
 }
 
 void mcr_host_init(struct mcr_core *core)

@@ -31,6 +31,10 @@ int32_t mcr_group_density(struct mcr_batch *batch, const struct mcr_range *range
 /* Chooses a mirror-like lobe, or none: see struct mcr_material_plugin. */
 int32_t mcr_group_delta(struct mcr_batch *batch, const struct mcr_range *range, const double *const *number, const struct mcr_directions *out,
                         double *probability, const struct mcr_colours *weight);
+/* A direction of the material's own sampling; and its albedo, which it can tell. */
+int32_t mcr_group_draw(struct mcr_batch *batch, const struct mcr_range *range, const double *const *number, const struct mcr_directions *out,
+                       double *density);
+int32_t mcr_group_albedo(struct mcr_batch *batch, const struct mcr_range *range, const struct mcr_colours *out);
 int32_t mcr_group_emission(struct mcr_batch *batch, const struct mcr_range *range, const struct mcr_colours *out);
 /* The same for points elsewhere, all of one group; material[0 .. n-1] are theirs. */
 int32_t mcr_points_emission(struct mcr_batch *batch, const struct mcr_group *group, const struct mcr_points *at, const uint32_t *material,

@@ -160,6 +160,19 @@ static int32_t keep_visible(struct mcr_batch *batch, const struct mcr_range *ran
         l->primitive[k] = -1;
         if (l->emitter[k] < 0 || !worth_tracing(l, k) || at_limit(batch, k))
             continue;
+        if (l->emitter[k] == core->sky_emitter) {
+            double o[3];
+            leave_point(batch, k, o);
+            l->ox[rays] = o[0];
+            l->oy[rays] = o[1];
+            l->oz[rays] = o[2];
+            l->dx[rays] = l->wx[k];
+            l->dy[rays] = l->wy[k];
+            l->dz[rays] = l->wz[k];
+            l->far[rays] = INFINITY;
+            l->lane[rays++] = k;
+            continue;
+        }
         uint32_t primitive = core->emitters->emitter[l->emitter[k]].primitive;
         double o[3], n[3], q[3] = {l->qx[k], l->qy[k], l->qz[k]}, d[3], square = 0, reach = core->surfaces.reach[primitive];
         leave_point(batch, k, o);
@@ -185,14 +198,16 @@ static int32_t keep_visible(struct mcr_batch *batch, const struct mcr_range *ran
     struct mcr_rays all = {rays, l->ox, l->oy, l->oz, l->dx, l->dy, l->dz};
     struct mcr_look look = {.rays = all, .lane = l->lane, .far = l->far, .seen = l->seen, .r = l->fr, .g = l->fg, .b = l->fb};
     int32_t status = mcr_look_visible(batch, &look);
-    for (uint32_t i = 0; i < rays && !status; i++)
+    for (uint32_t i = 0; i < rays && !status; i++) {
+        int32_t emitter = l->emitter[l->lane[i]];
         if (l->seen[i] > 0)
-            l->primitive[l->lane[i]] = core->emitters->emitter[l->emitter[l->lane[i]]].primitive;
+            l->primitive[l->lane[i]] = emitter == core->sky_emitter ? -2 : (int64_t)core->emitters->emitter[emitter].primitive;
+    }
     batch->shadow_rays += rays;
     return status;
 }
 
-/* The direction technique's first hits; a miss sees the background. */
+/* The direction technique's first hits; a miss sees the background or the sky. */
 static int32_t trace_directions(struct mcr_batch *batch, const struct mcr_range *range, uint32_t technique)
 {
     struct mcr_light_lanes *l = &batch->light;
@@ -223,7 +238,7 @@ static int32_t trace_directions(struct mcr_batch *batch, const struct mcr_range 
     for (uint32_t i = 0; i < rays && !status; i++) {
         uint32_t k = l->lane[i];
         l->primitive[k] = l->hit[i] >= 0 ? l->hit[i] : -2; /* -2: the background */
-        l->emitter[k] = l->hit[i] >= 0 ? core->emitters->of_primitive[l->hit[i]] : -1;
+        l->emitter[k] = l->hit[i] >= 0 ? core->emitters->of_primitive[l->hit[i]] : core->sky_emitter;
         l->distance[k] = l->far[i];
         l->qx[k] = l->ox[i] + l->far[i] * l->dx[i];
         l->qy[k] = l->oy[i] + l->far[i] * l->dy[i];
@@ -237,14 +252,22 @@ static void add_background(struct mcr_batch *batch, const struct mcr_range *rang
 {
     struct mcr_light_lanes *l = &batch->light;
     const struct mcr_paths *paths = &batch->sorted;
-    const double *radiance = batch->core->scene->render.background;
-    for (uint32_t k = range->begin; k < range->end; k++) {
+    const struct mcr_core *core = batch->core;
+    const uint32_t b = range->begin;
+    if (!core->background)
+        return;
+    if (core->sky) /* lr .. lb are free: points on emitters come later */
+        core->sky_functions->radiance(core->sky, range->end - b, l->wx + b, l->wy + b, l->wz + b, l->lr, l->lg, l->lb);
+    for (uint32_t k = b; k < range->end; k++) {
         if (l->primitive[k] != -2)
             continue;
-        double h = heuristic(batch->core, l->density[k]), weight = h / ((h + l->sum[k]) * l->density[k]);
-        batch->slot_r[paths->slot[k]] += paths->r[k] * l->fr[k] * radiance[0] * weight;
-        batch->slot_g[paths->slot[k]] += paths->g[k] * l->fg[k] * radiance[1] * weight;
-        batch->slot_b[paths->slot[k]] += paths->b[k] * l->fb[k] * radiance[2] * weight;
+        const double *constant = core->scene->render.background;
+        double red = core->sky ? l->lr[k - b] : constant[0], green = core->sky ? l->lg[k - b] : constant[1];
+        double blue = core->sky ? l->lb[k - b] : constant[2];
+        double h = heuristic(core, l->density[k]), weight = h / ((h + l->sum[k]) * l->density[k]);
+        batch->slot_r[paths->slot[k]] += paths->r[k] * l->fr[k] * red * weight;
+        batch->slot_g[paths->slot[k]] += paths->g[k] * l->fg[k] * green * weight;
+        batch->slot_b[paths->slot[k]] += paths->b[k] * l->fb[k] * blue * weight;
     }
 }
 
@@ -307,9 +330,9 @@ int32_t mcr_light_weights(struct mcr_batch *batch)
     }
     for (uint32_t j = 0; j < batch->rays; j++) {
         uint32_t k = batch->source[j];
-        if (k >= batch->points || batch->hit[j] < 0)
+        if (k >= batch->points || (batch->hit[j] < 0 && core->sky_emitter < 0))
             continue;
-        l->emitter[k] = core->emitters->of_primitive[batch->hit[j]];
+        l->emitter[k] = batch->hit[j] < 0 ? core->sky_emitter : core->emitters->of_primitive[batch->hit[j]];
         l->distance[k] = batch->t[j];
         l->qx[k] = batch->rox[j] + batch->t[j] * batch->rdx[j];
         l->qy[k] = batch->roy[j] + batch->t[j] * batch->rdy[j];

@@ -63,6 +63,8 @@ static struct mcr_job *open_job(struct mcr_batch *batch, struct mcr_pass *pass)
     memset(batch->slot_b + slot, 0, empty->paths * sizeof(double));
     if (batch->cap_r)
         mcr_compat_raise_caps(batch, slot, empty->paths);
+    if (batch->core->features)
+        mcr_features_begin(batch, slot, empty->paths);
     return empty;
 }
 
@@ -120,12 +122,16 @@ static void finish_jobs(struct mcr_batch *batch, struct mcr_pass *pass)
             continue;
         if (batch->cap_r)
             mcr_compat_clamp(batch, (size_t)i * MCR_JOB_SLOTS, job->paths);
+        if (batch->core->features)
+            mcr_features_settle(batch, (size_t)i * MCR_JOB_SLOTS, job->paths);
         if (batch->slot_weight)
             weigh(batch, (size_t)i * MCR_JOB_SLOTS, job->paths);
         for (uint32_t c = 0; c < job->cells; c++) {
             size_t slot = (size_t)i * MCR_JOB_SLOTS + (size_t)c * pass->cell_samples;
             uint64_t number = job->first_cell + c;
             finish_cell(batch, pass, number, slot);
+            if (pass->features)
+                mcr_features_cell(batch, slot, pass->cell_samples, &pass->features[number]);
             if (isfinite(pass->cell[number].sum[0] + pass->cell[number].sum[1] + pass->cell[number].sum[2]))
                 continue;
             reject(batch, pass, number, slot);
@@ -176,6 +182,7 @@ static int32_t camera(struct mcr_batch *batch, struct mcr_pass *pass)
                                          .dx = batch->rdx + batch->rays,
                                          .dy = batch->rdy + batch->rays,
                                          .dz = batch->rdz + batch->rays,
+                                         .distance = core->features && batch->features.distance ? batch->features.distance + begin.slot : NULL,
                                          .weight = weight};
         core->stages->camera(core->scene, &lanes);
         if (core->charts.needs)
@@ -277,6 +284,8 @@ static int32_t scatter_range(struct mcr_batch *batch, const struct mcr_range *ra
         status = draw_range(batch, range);
     if (!status && range->roulette < range->end)
         status = roulette(batch, range);
+    if (!status && core->point_lights)
+        TIMED(MCR_STAGE_LIGHT, status = mcr_point_lights_add(batch, range));
     batch->running = NULL;
     if (status)
         return status;
@@ -317,7 +326,12 @@ static int32_t step(struct mcr_batch *batch, struct mcr_pass *pass)
         mcr_crossing_points(batch);
     if (batch->cap_r)
         mcr_compat_lower_caps(batch);
-    TIMED(MCR_STAGE_EMISSION, status = emission(batch));
+    if (core->features)
+        TIMED(MCR_STAGE_FILM, status = mcr_features_hit(batch));
+    if (!status)
+        TIMED(MCR_STAGE_EMISSION, status = emission(batch));
+    if (core->features)
+        mcr_features_direct(batch);
     for (uint32_t r = 0; !status && r < batch->range_count && !batch->range[r].ends; r++)
         status = scatter_range(batch, &batch->range[r]);
     if (status)

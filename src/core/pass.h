@@ -20,6 +20,7 @@ struct mcr_pass {
     uint64_t cells;
     struct mcr_cell *cell;            /* results */
     struct mcr_cell_channels *channels; /* the same for the channels' moments; NULL: nobody asks for them */
+    struct mcr_cell_features *features; /* the same for features; NULL: nobody asks for them */
     _Atomic uint64_t next;            /* the first cell that nobody took */
     _Atomic uint64_t done;            /* cells finished */
     _Atomic int failed;               /* an operation failed, or memory is short: everybody stops */

@@ -10,6 +10,7 @@
 #include "core/crossing.h"
 #include "core/groups.h"
 #include "core/host.h"
+#include "core/lights.h"
 #include "core/pass.h"
 
 /* Rays in a batch by default: their arrays stay in the second-level cache (measured: `make bench`). */
@@ -71,6 +72,7 @@ static int prepare(struct render *render, const struct mcr_scene *scene, const s
     core->scene = scene;
     core->accel = accel;
     core->options = options;
+    core->features = options->features;
     core->trace = trace_of(options->isa, accel->kind);
     core->stages = stages_of(options->isa);
     core->lights = lights_of(options->isa);
@@ -89,6 +91,9 @@ static int prepare(struct render *render, const struct mcr_scene *scene, const s
         mcr_crossing_init(core, render->arena))
         return -1;
     mcr_crossing_camera(core);
+    if (mcr_lights_init(core, render->arena) || mcr_point_lights_create(render->arena, scene, &core->point_lights))
+        return -1;
+    core->background |= core->sky != NULL;
     mcr_host_init(core);
     core->scratch_bytes = mcr_host_scratch(core);
     return 0;
@@ -142,8 +147,9 @@ static void collect(struct render *render, struct mcr_render_stats *stats)
 /* One cell of every pixel goes to the sink. */
 static int hand_on(const struct mcr_pass *pass, const struct mcr_cell_sink *sink, uint64_t first, uint32_t count)
 {
-    return pass->channels ? sink->add_channels(sink->data, pass->cell + first, pass->channels + first, count)
-                          : sink->add(sink->data, pass->cell + first, count);
+    int status = pass->channels ? sink->add_channels(sink->data, pass->cell + first, pass->channels + first, count)
+                                : sink->add(sink->data, pass->cell + first, count);
+    return !status && pass->features ? sink->add_features(sink->features, pass->features + first, count) : status;
 }
 
 /* Runs one pass of `blocks` cells a pixel and hands them on. Returns 0, or -1 with pass.error set. */
@@ -233,7 +239,8 @@ int mcr_render(const struct mcr_scene *scene, const struct mcr_accel *accel, con
     uint64_t cells = pass->pixels > PASS_CELLS ? pass->pixels : PASS_CELLS;
     pass->cell = calloc(cells, sizeof *pass->cell);
     pass->channels = sink->add_channels ? calloc(cells, sizeof *pass->channels) : NULL;
-    int short_of_memory = !render.arena || !pass->cell || (sink->add_channels && !pass->channels);
+    pass->features = options->features ? calloc(cells, sizeof *pass->features) : NULL;
+    int short_of_memory = !render.arena || !pass->cell || (sink->add_channels && !pass->channels) || (options->features && !pass->features);
     pass->tick = options->progress ? tick : NULL;
     pass->tick_data = &render;
     render.samples_total = pass->pixels * scene->render.spp;
@@ -251,6 +258,7 @@ int mcr_render(const struct mcr_scene *scene, const struct mcr_accel *accel, con
     free(render.batch);
     free(pass->cell);
     free(pass->channels);
+    free(pass->features);
     mcr_arena_destroy(render.arena);
     stats->wall_seconds = mcr_wall_seconds() - render.start;
     stats->cpu_seconds = mcr_cpu_seconds() - cpu;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
  * Groups the rays by what they hit. Zones: the groups that scatter, their paths that roulette may end, the groups whose paths end here (at the depth
- * limit, or because the material only emits), and misses; paths that end without emitting are gone. Each ray goes to its zone's list in one pass, and
+ * limit, or because the material only emits), and misses; paths that end without emitting are gone, unless features of their hits are asked for. Each ray goes to its zone's list in one pass, and
  * the lists are laid out one behind the other, the first two zones of a group as one range. Stage file of integers.
  */
 #include <string.h>
@@ -55,7 +55,7 @@ void MCR_ISA_NAME(mcr_stage_sort)(struct mcr_batch *batch)
     for (uint32_t g = 0; g < groups; g++)
         at = lay_out(batch, g, groups + g, at);
     for (uint32_t g = 0; g < groups; g++)
-        if (batch->core->group[g].emits)
+        if (batch->core->group[g].emits || batch->core->features)
             at = lay_out(batch, 2 * groups + g, 0, at);
     batch->points = at;
     batch->miss = batch->zone_list + (size_t)3 * groups * batch->core->capacity;

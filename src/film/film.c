@@ -63,7 +63,8 @@ static void sink_end_replicate(void *film)
 struct mcr_cell_sink mcr_film_sink(struct mcr_film *film)
 {
     int moments = film->channels && !film->correlated;
-    return (struct mcr_cell_sink){film, sink_add, sink_end_replicate, moments ? sink_add_channels : NULL};
+    return (struct mcr_cell_sink){
+        .data = film, .add = sink_add, .end_replicate = sink_end_replicate, .add_channels = moments ? sink_add_channels : NULL};
 }
 
 static void level_free(struct mcr_film_level *level)

@@ -4,7 +4,7 @@
 #include "scene/vector.h"
 
 #define ROLE(role) (1u << (role))
-#define SHAPES (ROLE(MCR_BLOCK_SHAPE) | ROLE(MCR_BLOCK_GROUP))
+#define SHAPES (ROLE(MCR_BLOCK_SHAPE) | ROLE(MCR_BLOCK_GROUP) | ROLE(MCR_BLOCK_LIGHT))
 
 void *mcr_build_alloc(struct mcr_build *build, uint64_t count, size_t size)
 {
@@ -104,7 +104,7 @@ static void build_group(struct mcr_build *build, const struct mcr_item *block, c
         build_item(build, &block->item[i], &own);
 }
 
-/* Builds a shape or a group and passes over everything else, which was judged where it stands. */
+/* Builds a shape, a light or a group and passes over everything else, which was judged where it stands. */
 static void build_item(struct mcr_build *build, const struct mcr_item *item, const struct mcr_transform *transform)
 {
     const struct mcr_block_word *word = item->is_block ? mcr_scene_block(item->word, NULL) : NULL;
@@ -112,11 +112,13 @@ static void build_item(struct mcr_build *build, const struct mcr_item *item, con
         mcr_build_shape(build, item, transform);
     else if (word && word->role == MCR_BLOCK_GROUP)
         build_group(build, item, transform);
+    else if (item->is_block && strcmp(item->word, "light") == 0)
+        mcr_build_light(build, item, transform);
 }
 
 void mcr_build_geometry(struct mcr_build *build, const struct mcr_item *root, const struct mcr_transform *to_camera)
 {
-    if (make_room(build, root) != 0)
+    if (make_room(build, root) != 0 || mcr_build_light_room(build, root) != 0)
         return;
     for (uint32_t i = 0; i < root->count; i++)
         build_item(build, &root->item[i], to_camera);
@@ -167,10 +169,10 @@ static void build_all(struct mcr_build *build, const struct mcr_item *root)
     mcr_build_geometry(build, root, &to_camera);
     mcr_build_unused_materials(build);
     mcr_build_unused_textures(build);
+    mcr_build_light_names(build);
     if (build->short_of_memory)
         return;
-    if (build->scene->material_count > 0)
-        mcr_build_lights(build);
+    mcr_build_lights(build);
     if (mcr_diagnostics_errors(build->diagnostics) == 0)
         mcr_build_render_space(build);
     mcr_build_sampler(build);

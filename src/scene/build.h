@@ -33,6 +33,13 @@ struct mcr_build {
     const char **texture_names;            /* the same, for suggestions */
     uint8_t *texture_used;                 /* by texture */
 
+    struct mcr_named_light {
+        const char *name;
+        struct mcr_place place;
+        uint32_t number;
+    } *named_lights;                       /* in the order of the text, then by name */
+    uint32_t named_light_count;
+
     uint64_t vertex_room, triangle_room, normal_room, uv_room;
     uint32_t needs;                        /* MCR_NEEDS_* of all materials: triangles without coordinates are given some */
     uint32_t plain_uv;                     /* the first of 3 coordinates for them: (0, 0), (1, 0), (0, 1) */
@@ -160,7 +167,16 @@ uint32_t mcr_build_add_uv(struct mcr_build *build, double u, double v);
 /* Stores a vertex; returns its number. One that is too far out is an error at `place`. */
 uint32_t mcr_build_add_vertex(struct mcr_build *build, const double at[3], const char *of, struct mcr_place place);
 
-/* After all shapes: has_lights, planes_emit. Every shape's material exists. */
+/* lights.c: room for the lights of a scene; -1 after an error. */
+int mcr_build_light_room(struct mcr_build *build, const struct mcr_item *root);
+/* One block `light NAME KIND { ... }`, moved by `transform` into the camera's frame, still in world units. */
+void mcr_build_light(struct mcr_build *build, const struct mcr_item *block, const struct mcr_transform *transform);
+/* After all lights: two of one name are an error. */
+void mcr_build_light_names(struct mcr_build *build);
+/* Whether an environment or a sun with an extent gives light. */
+int mcr_build_sky_emits(const struct mcr_scene *scene);
+
+/* After all shapes: has_lights, planes_emit. Every shape's material exists, or there were errors. */
 void mcr_build_lights(struct mcr_build *build);
 /* After all shapes, none of which is wrong: primitive numbers, the extent, the scale, and everything multiplied by it. */
 void mcr_build_render_space(struct mcr_build *build);

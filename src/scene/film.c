@@ -110,6 +110,8 @@ static void check_crop(struct mcr_build *build, struct mcr_place place, const ch
     pixels = (uint64_t)(film->x1 - film->x0) * (film->y1 - film->y0);
     if (build->overrides && build->overrides->channel_variance)
         bytes += MCR_FILM_CHANNEL_BYTES_PER_PIXEL;
+    if (build->overrides)
+        bytes += build->overrides->layer_bytes;
     if (pixels > MCR_FILM_MEMORY_LIMIT / bytes)
         mcr_error(build, place, "a film of %u x %u pixels needs %llu MiB, at most 1024 MiB are allowed: render it in parts with 'crop'",
                   film->x1 - film->x0, film->y1 - film->y0,

@@ -15,6 +15,7 @@
 #include "language/tree.h"
 #include "plugin/node.h"
 #include "plugin/registry.h"
+#include "scene/lights.h"
 #include "scene/study.h"
 #include "scene/texture.h"
 
@@ -172,7 +173,10 @@ struct mcr_scene {
     struct mcr_triangles triangles;
     uint32_t primitive_count;    /* of shapes and triangles together, at most 2^31 - 1 */
     uint32_t dropped;            /* degenerate triangles of meshes, left out */
-    int has_lights;              /* bounded shapes emit */
+    uint32_t light_count;        /* point, spot and sun, in the order of the text */
+    struct mcr_scene_light *light;
+    const struct mcr_environment *environment; /* NULL: there is none */
+    int has_lights;              /* bounded shapes emit, or there is a sun with an extent or an environment that is not black */
     struct mcr_place sampler_place;
     int sampler_chosen;          /* by the program, since neither the scene nor the command line names one */
     const struct mcr_scene_study *study; /* NULL where nothing asks for one */
@@ -192,6 +196,7 @@ struct mcr_overrides {
     const struct mcr_study_texts *study; /* NULL: a block `study` is judged if there is one */
     int has_roulette_from;
     uint32_t roulette_from;
+    uint32_t layer_bytes; /* a pixel, that layers of features take: count for the film's memory */
     int channel_variance; /* the film is to keep the channels' variances: counts for its memory */
 };
 

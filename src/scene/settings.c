@@ -61,10 +61,20 @@ static int take(struct mcr_build *build, struct mcr_settings *settings, int inde
     return -1;
 }
 
+/* The row of a block; where its kind is wrong, which is told elsewhere, one of its word. */
+static const struct mcr_block_word *row_of(const struct mcr_item *item)
+{
+    const struct mcr_block_word *row = mcr_scene_block(item->word, item->kind);
+    for (uint32_t i = 0; i < mcr_scene_block_count && !row; i++)
+        if (strcmp(mcr_scene_blocks[i].word, item->word) == 0)
+            row = &mcr_scene_blocks[i];
+    return row;
+}
+
 static int match_block(struct mcr_build *build, const struct mcr_item *item, uint32_t inside, struct mcr_settings *settings)
 {
     int index = find_setting(settings->word, item->word);
-    const struct mcr_block_word *row = mcr_scene_block(item->word, item->kind);
+    const struct mcr_block_word *row = row_of(item);
     if (row && (inside & (1u << row->role)))
         return 0;
     if (index < 0) {
@@ -89,7 +99,8 @@ static int match_setting(struct mcr_build *build, const struct mcr_item *item, s
 {
     int index = find_setting(settings->word, item->word);
     if (index < 0) {
-        if (mcr_scene_block(item->word, NULL) || strcmp(item->word, "camera") == 0 || strcmp(item->word, "texture") == 0)
+        if (mcr_scene_block(item->word, NULL) || strcmp(item->word, "camera") == 0 ||
+            strcmp(item->word, "texture") == 0 || strcmp(item->word, "light") == 0)
             mcr_error(build, item->place, "'%s' opens a block, it is no setting of '%s'", item->word, settings->of);
         else if (item->value.kind == MCR_VALUE_ERROR)
             settings->damaged = 1; /* perhaps no setting at all, but what was left behind by a mistake */

@@ -38,6 +38,8 @@ static void find_extent(struct mcr_build *build)
     const struct mcr_triangles *triangles = &scene->triangles;
     const struct mcr_camera *camera = &scene->camera;
     double extent = camera->lens_radius;
+    for (uint32_t i = 0; i < scene->light_count; i++)
+        extent = mcr_max(extent, mcr_largest(scene->light[i].position));
     for (uint32_t i = 0; i < scene->shape_count; i++)
         extent = mcr_max(extent, shape_extent(&scene->shape[i]));
     for (uint32_t i = 0; i < triangles->count; i++) {
@@ -85,6 +87,12 @@ static void apply_scale(struct mcr_build *build)
         if (shortest(shape) < SMALLEST)
             mcr_error(build, shape->place, "this shape is too small beside the scene: less than %.3g of its extent", SMALLEST);
     }
+    for (uint32_t i = 0; i < scene->light_count; i++) {
+        struct mcr_scene_light *light = &scene->light[i];
+        multiply(light->position, 3, scale);
+        if (light->kind != MCR_LIGHT_SUN)
+            multiply(light->colour, 3, scale * scale);
+    }
     multiply(triangles->x, triangles->vertex_count, scale);
     multiply(triangles->y, triangles->vertex_count, scale);
     multiply(triangles->z, triangles->vertex_count, scale);
@@ -106,6 +114,9 @@ static int emits(const struct mcr_scene_material *material)
 void mcr_build_lights(struct mcr_build *build)
 {
     struct mcr_scene *scene = build->scene;
+    scene->has_lights = mcr_build_sky_emits(scene);
+    if (scene->material_count == 0)
+        return; /* which shapes have missed: that was told */
     for (uint32_t i = 0; i < scene->shape_count; i++) {
         const struct mcr_shape *shape = &scene->shape[i];
         if (!emits(&scene->material[shape->material]))

@@ -183,6 +183,41 @@ static const struct mcr_parameter mesh[] = {
     [MESH_NORMALS] = WORD("normals", MCR_WORD_POINT_LIST, 0, "Shading normals, one a vertex."),
     [MESH_UV] = WORD("uv", MCR_WORD_UV_LIST, 0, "Surface coordinates, one pair a vertex."),
 };
+#define LIGHT [LIGHT_TRANSFORM] = WORD("transform", MCR_WORD_TRANSFORM, 0, "Block of steps that move this light.")
+#define LAMP                                                                                                                       \
+    LIGHT,                                                                                                                         \
+    [POINT_POSITION] = POINT("position", REQUIRED, "Where it is."),                                                                \
+    [POINT_INTENSITY] = ROW("intensity", MCR_TYPE_COLOUR, 0, "W/sr", 0, FAR, 0, 0, 0, "Radiant intensity; of a spot on its axis."),  \
+    [POINT_POWER] = ROW("power", MCR_TYPE_COLOUR, 0, "W", 0, FAR, 0, 0, 0, "Or the power that it radiates in all.")
+
+static const struct mcr_parameter point[] = { LAMP };
+static const struct mcr_parameter spot[] = {
+    LAMP,
+    [SPOT_TO] = POINT("to", 0, "A point on its axis."),
+    [SPOT_DIRECTION] = VECTOR("direction", 0, "Or the direction of its axis, away from it."),
+    [SPOT_ANGLE] = ROW("angle", MCR_TYPE_NUMBER, ABOVE, "degrees", 0, 180, 30, 0, 0, "From the axis to the edge of the light."),
+    [SPOT_SOFTNESS] = ROW("softness", MCR_TYPE_NUMBER, 0, "", 0, 1, 0.2, 0, 0,
+                          "The outer part of the angle over which the light falls off; 0 is a hard edge."),
+};
+static const struct mcr_parameter sun[] = {
+    LIGHT,
+    [SUN_DIRECTION] = VECTOR("direction", REQUIRED, "Direction in which its light travels."),
+    [SUN_IRRADIANCE] = ROW("irradiance", MCR_TYPE_COLOUR, 0, "W/m^2", 0, FAR, 0, 0, 0, "On a surface that faces it."),
+    [SUN_RADIANCE] = ROW("radiance", MCR_TYPE_COLOUR, 0, "W/(sr m^2)", 0, FAR, 0, 0, 0, "Or its radiance, with an angular radius."),
+    [SUN_ANGULAR_RADIUS] = ROW("angular_radius", MCR_TYPE_NUMBER, 0, "degrees", 0, 90, 0, 0, 0,
+                               "Of its disk in the sky; 0: parallel light, and nothing to be seen."),
+};
+static const struct mcr_parameter environment[] = {
+    LIGHT,
+    [SKY_RADIANCE] = ROW("radiance", MCR_TYPE_COLOUR, 0, "W/(sr m^2)", 0, FAR, 0, 0, 0, "The same from everywhere."),
+    [SKY_ZENITH] = ROW("zenith", MCR_TYPE_COLOUR, 0, "W/(sr m^2)", 0, FAR, 0, 0, 0,
+                       "Or from above: with horizon, linear in the cosine to +y between the two."),
+    [SKY_HORIZON] = ROW("horizon", MCR_TYPE_COLOUR, 0, "W/(sr m^2)", 0, FAR, 0, 0, 0, "From the horizon."),
+    [SKY_NADIR] = ROW("nadir", MCR_TYPE_COLOUR, 0, "W/(sr m^2)", 0, FAR, 0, 0, 0, "From below; that of the horizon by default."),
+    [SKY_IMAGE] = WORD("image", MCR_WORD_TEXT, 0, "Or a file, by longitude and latitude: top row at +y, middle along +z, +x in the left half."),
+    [SKY_FILTER] = CHOICE("filter", "nearest|bilinear", "Between the texels of the image."),
+    [SKY_SCALE] = ROW("scale", MCR_TYPE_NUMBER, 0, "", 0, FAR, 1, 0, 0, "Factor on all of it."),
+};
 static const struct mcr_parameter group[] = {
     WORD("transform", MCR_WORD_TRANSFORM, 0, "Block of steps that move all that is in the group."),
 };
@@ -229,6 +264,10 @@ const struct mcr_block_word mcr_scene_blocks[] = {
     BLOCK("study", NULL, MCR_BLOCK_STUDY, study, "What `mcrender study` compares; other commands check it and do without."),
     BLOCK("material", NULL, MCR_BLOCK_MATERIAL, surface, "A named material; its kind is a plugin, whose parameters are its settings, beside these."),
     BLOCK("texture", "checker", MCR_BLOCK_TEXTURE, checker, "Two colours, field by field."),
+    BLOCK("light", "point", MCR_BLOCK_LIGHT, point, "A point that radiates alike in all directions."),
+    BLOCK("light", "spot", MCR_BLOCK_LIGHT, spot, "A point that radiates into a cone."),
+    BLOCK("light", "sun", MCR_BLOCK_LIGHT, sun, "Parallel light, or a disk that is infinitely far."),
+    BLOCK("light", "environment", MCR_BLOCK_LIGHT, environment, "Light from infinitely far all around; a scene has at most one."),
     BLOCK("plane", NULL, MCR_BLOCK_SHAPE, plane, "An infinite plane."),
     BLOCK("sphere", NULL, MCR_BLOCK_SHAPE, sphere, "A sphere; its front is outside."),
     BLOCK("quad", NULL, MCR_BLOCK_SHAPE, quad, "A parallelogram, or any flat convex quadrilateral."),

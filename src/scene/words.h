@@ -51,13 +51,13 @@ const char *mcr_word_form(uint32_t type);
 
 enum mcr_block_role {
     MCR_BLOCK_CAMERA, MCR_BLOCK_FILM, MCR_BLOCK_RENDER, MCR_BLOCK_MATERIAL, MCR_BLOCK_SHAPE, MCR_BLOCK_GROUP, MCR_BLOCK_TRANSFORM,
-    MCR_BLOCK_STUDY, MCR_BLOCK_REFERENCE, MCR_BLOCK_TEXTURE
+    MCR_BLOCK_STUDY, MCR_BLOCK_REFERENCE, MCR_BLOCK_TEXTURE, MCR_BLOCK_LIGHT
 };
 
 /* A block, or a call with named arguments (filters). */
 struct mcr_block_word {
     const char *word;
-    const char *kind;    /* of a camera or a texture, else NULL */
+    const char *kind;    /* of a camera, a texture or a light, else NULL */
     uint32_t role;       /* enum mcr_block_role */
     uint32_t count;
     const struct mcr_parameter *setting;
@@ -67,7 +67,7 @@ struct mcr_block_word {
 extern const struct mcr_block_word mcr_scene_blocks[];
 extern const uint32_t mcr_scene_block_count;
 
-/* The row of a block by its word and, for cameras and textures, its kind; NULL if there is none. */
+/* The row of a block by its word and, for cameras, textures and lights, its kind; NULL if there is none. */
 const struct mcr_block_word *mcr_scene_block(const char *word, const char *kind);
 
 /* Arguments of `filter`: box(radius=0.5), tent(radius=1), gaussian(sigma=0.5, radius=1.5), mitchell(radius=2, b=1/3, c=1/3). In the order of enum mcr_filter_kind. */
@@ -112,6 +112,12 @@ enum { CHECKER_EVEN = 2, CHECKER_ODD, CHECKER_FILTER };
 enum { GRADIENT_FROM = 2, GRADIENT_TO, GRADIENT_STOPS, GRADIENT_ALONG, GRADIENT_WRAP };
 /* What every material takes beside its plugin's parameters. */
 enum { SURFACE_EMISSION, SURFACE_EMISSION_SIDES, SURFACE_NORMAL_MAP, SURFACE_NORMAL_STRENGTH, SURFACE_BUMP, SURFACE_BUMP_HEIGHT, SURFACE_COUNT };
+/* The first setting of every light. */
+enum { LIGHT_TRANSFORM };
+enum { POINT_POSITION = 1, POINT_INTENSITY, POINT_POWER };
+enum { SPOT_TO = POINT_POWER + 1, SPOT_DIRECTION, SPOT_ANGLE, SPOT_SOFTNESS };
+enum { SUN_DIRECTION = 1, SUN_IRRADIANCE, SUN_RADIANCE, SUN_ANGULAR_RADIUS };
+enum { SKY_RADIANCE = 1, SKY_ZENITH, SKY_HORIZON, SKY_NADIR, SKY_IMAGE, SKY_FILTER, SKY_SCALE };
 enum { STEP_TRANSLATE, STEP_ROTATE, STEP_SCALE, STEP_MATRIX, STEP_LOOKAT };
 
 #define MCR_SETTINGS_LIMIT 24u /* no table is longer */

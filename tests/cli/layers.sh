@@ -1,6 +1,6 @@
 #!/bin/bash
 # SPDX-License-Identifier: Apache-2.0
-# --layers variance: which files hold it, and what is refused before the first ray.
+# --layers: which files hold them, and what is refused before the first ray.
 . "$srcdir/tests/tap.sh"
 . "$srcdir/tests/cli/run.sh"
 box=$srcdir/scenes/cornell-box.scn
@@ -35,6 +35,22 @@ ends "EXR holds the layer, PNG beside it the picture" 0 "wrote     a.exr with la
 refute "PNG does not say that it holds layers" grep -q 'a.png with layers' "$TMPDIR/stderr"
 run "$box" --size 8x8 --spp 4 -o plain.exr -o plain.png
 check "PNG is the same as without layers" cmp a.png plain.png
+run "$box" --size 8x8 --spp 4 --layers depth -o a.ppm
+ends "PPM holds no depth" 2 "mcrender: error: --layers: 'a.ppm' cannot hold layers"
+run "$box" --size 3000x2000 --layers albedo,normal,depth,id,direct -o big.exr
+ends "layers of features count for the film's memory" 3 "MiB, at most 1024 MiB"
+every=id,indirect,albedo,normal,depth,variance,direct
+run "$box" --size 24x16 --spp 21 --seed 3 --layers $every -o every.exr
+ends "every layer" 0 "wrote     every.exr with layers"
+for way in "--threads 1" "--threads 7" "--batch 1" "--batch 1000" "--isa baseline"; do
+    run "$box" --size 24x16 --spp 21 --seed 3 --layers $every $way -o way.exr
+    check "the same bits with $way" cmp every.exr way.exr
+done
+run "$box" --size 24x16 --spp 21 --seed 3 -o every.pfm
+run compare every.exr every.pfm --fail-above mse=0
+equal "the picture is the same with every layer" "$status" 0
+run "$box" --size 8x8 --spp 1 --layers depth -o one.exr
+ends "one sample is enough for depth" 0 "wrote     one.exr with layers"
 run "$box" --size 8x8 --spp 7 --sampler 'stratified(cosine)' --replicates 3 --layers variance -o r.exr
 ends "replicates" 0 "wrote     r.exr with layers"
 
@@ -47,6 +63,11 @@ else
     check "units: samples" bash -c "$described a.exr | grep -q 'mcrender:units: \"4\"'"
     check "units: replicates" bash -c "$described r.exr | grep -q 'mcrender:units: \"3\"'"
     refute "no units without the layer" bash -c "$described plain.exr | grep -q mcrender:units"
+    for channel in R G B variance.R variance.Y albedo.R albedo.G albedo.B N.X N.Y N.Z Z id direct.R direct.B indirect.G; do
+        check "every layer: $channel" bash -c "$described every.exr | grep 'channel list' | grep -qw -- '$channel'"
+    done
+    check "the materials' names" bash -c "$described every.exr | grep -q 'mcrender:materials: \"red green white lamp\"'"
+    refute "no names without ids" bash -c "$described one.exr | grep -q mcrender:materials"
     check "no layer without asking" bash -c "$described plain.exr | grep -q 'channel list: R, G, B\$'"
 fi
 finish

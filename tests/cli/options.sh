@@ -136,6 +136,8 @@ for bad in yes On 'on(' 'on(from=)' 'on(from=2' 'on(from=-1)' 'on(from=214748364
 done
 for bad in clam clamp,clamp clamp, none,clamp 'clamp disk-polar'; do refused "--compat " --compat "$bad"; done
 refused "did you mean 'disk-polar'?" --compat disc-polar
+refused "--layers names 'depth' twice" --layers depth,id,depth
+for bad in depth, ,depth 'depth id' depth,,id; do refused "--layers does not know" --layers "$bad"; done
 refused "--layers does not know 'varience', did you mean 'variance'?" --layers varience
 for bad in 8 8x 0x8 8x0 8x8x8 8,8 -8x8 8x65537 8X8 '8 x8'; do refused "--size expects WIDTHxHEIGHT" --size "$bad"; done
 for bad in 1,2,3 1,2,3,4,5 a,b,c,d 1,2,3,-4 1x2x3x4; do refused "--crop expects X0,Y0,X1,Y1" --crop "$bad"; done
@@ -229,7 +231,7 @@ run check --spp 3 --sampler uniform --set glow=2 --size 4x4 glow.scn
 ends "check with replaced settings" 0
 run plugins
 ends "plugins" 0
-for word in uniform cosine light mixture bsdf nee stratified sobol independent lambert oren-nayar conductor emitter; do
+for word in uniform cosine light mixture bsdf nee stratified sobol halton bluenoise antithetic independent lambert oren-nayar conductor emitter; do
     check "plugins lists $word" grep -qw "$word" "$TMPDIR/stdout"
 done
 run plugins light

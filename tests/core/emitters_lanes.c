@@ -43,6 +43,12 @@ static void run(const struct stage *s, const struct mcr_emitter_functions *f, ui
     memcpy(part.pz, b->pz + first, n * sizeof(double));
     for (int k = 0; k < 3; k++)
         memcpy(part.u[k], b->u[k] + first, n * sizeof(double));
+    if (b->at.nx) {
+        memcpy(part.nx, b->nx + first, n * sizeof(double));
+        memcpy(part.ny, b->ny + first, n * sizeof(double));
+        memcpy(part.nz, b->nz + first, n * sizeof(double));
+        batch_normals(&part);
+    }
     batch_draw(&part, s, f, by);
     const double *drawn[] = {part.x, part.y, part.z, part.density};
     for (uint32_t k = 0; k < 4; k++)
@@ -82,6 +88,9 @@ static void make_points(struct batch *b)
         b->x[i] = sqrt(1 - z * z) * cos(angle);
         b->y[i] = sqrt(1 - z * z) * sin(angle);
         b->z[i] = z;
+        b->nx[i] = i % 17 ? b->y[i] : 0; /* some without a normal */
+        b->ny[i] = i % 17 ? z : 0;
+        b->nz[i] = i % 17 ? b->x[i] : 0;
     }
     batch_numbers(b, 3);
 }
@@ -95,7 +104,7 @@ static uint64_t different(double *const a[RESULTS], double *const b[RESULTS], ui
     return count;
 }
 
-static void test_bits(uint32_t many)
+static void test_bits(uint32_t many, int normals)
 {
     struct stage s;
     struct batch b;
@@ -103,6 +112,8 @@ static void test_bits(uint32_t many)
     make_stage(&s, many);
     batch_begin(&b, LANES);
     make_points(&b);
+    if (normals)
+        batch_normals(&b);
     for (uint32_t k = 0; k < RESULTS; k++) {
         reference[k] = doubles(LANES);
         other[k] = doubles(LANES);
@@ -119,8 +130,8 @@ static void test_bits(uint32_t many)
                 for (uint32_t first = 0; first < LANES; first += pieces[k])
                     run(&s, functions_of(isa), by, &b, first, LANES - first < pieces[k] ? LANES - first : pieces[k], other);
                 uint64_t count = different(reference, other, LANES);
-                ok(count == 0, "%u emitters, by %s: the same bits with isa %u in pieces of %u (%llu differ)", s.emitters->count,
-                   by ? "solid angle" : "area", isa, pieces[k], (unsigned long long)count);
+                ok(count == 0, "%u emitters, %s normals, by %s: the same bits with isa %u in pieces of %u (%llu differ)", s.emitters->count,
+                   normals ? "with" : "without", by ? "solid angle" : "area", isa, pieces[k], (unsigned long long)count);
             }
         }
     }
@@ -198,6 +209,8 @@ static void test_tree(uint32_t many)
     for (uint32_t round = 0; round < 20; round++) {
         struct mcr_emitter_node *node = s.emitters->node;
         make_points(&b);
+        if (round % 2)
+            batch_normals(&b);
         for (uint32_t i = 0; i < LANES; i++) {
             b.pz[i] += 0.01 * round;
             b.x[i] = i % 50 ? b.x[i] : 0, b.y[i] = i % 100 ? b.y[i] : 0; /* along axes, and not unit: as well */
@@ -324,6 +337,8 @@ static void test_wanted(uint32_t many, uint32_t by, double share)
         count += wanted[i] != 0;
     }
     some.at.wanted = wanted;
+    batch_normals(&full);
+    batch_normals(&some);
     batch_draw(&full, &s, f, by);
     batch_draw(&some, &s, f, by);
     for (uint32_t i = 0; i < LANES; i++) {
@@ -354,11 +369,13 @@ static void test_wanted(uint32_t many, uint32_t by, double share)
 
 int main(void)
 {
-    test_bits(0);
-    test_bits(3);
-    test_bits(6);
-    test_bits(9);
-    test_bits(40);
+    test_bits(0, 0);
+    test_bits(3, 0);
+    test_bits(6, 0);
+    test_bits(9, 0);
+    test_bits(9, 1);
+    test_bits(40, 0);
+    test_bits(40, 1);
     test_points(0);
     test_points(3);
     test_points(9);

@@ -15,8 +15,10 @@
 
 #define FRONT MCR_MATERIAL_EMITS_FRONT
 #define BACK MCR_MATERIAL_EMITS_BACK
+#ifndef MOST_SHAPES
 #define MOST_SHAPES 64
 #define MOST_TRIANGLES 64
+#endif
 
 /* One material a shape. */
 struct stage {
@@ -157,6 +159,7 @@ static inline void fill_numbers(uint64_t key, uint32_t n, double *out)
 /* A batch of lanes: points, numbers, directions, results. */
 struct batch {
     uint32_t n;
+    double *nx, *ny, *nz; /* normals: at->nx is NULL until batch_normals */
     double *px, *py, *pz, *u[3], *x, *y, *z, *density, *kept;
     struct mcr_points at;
     struct mcr_directions toward;
@@ -164,7 +167,7 @@ struct batch {
 
 static inline void batch_begin(struct batch *b, uint32_t n)
 {
-    double **all[] = {&b->px, &b->py, &b->pz, &b->u[0], &b->u[1], &b->u[2], &b->x, &b->y, &b->z, &b->density, &b->kept};
+    double **all[] = {&b->nx, &b->ny, &b->nz, &b->px, &b->py, &b->pz, &b->u[0], &b->u[1], &b->u[2], &b->x, &b->y, &b->z, &b->density, &b->kept};
     memset(b, 0, sizeof *b);
     for (size_t i = 0; i < sizeof all / sizeof *all; i++)
         *all[i] = doubles(n);
@@ -175,9 +178,14 @@ static inline void batch_begin(struct batch *b, uint32_t n)
 
 static inline void batch_end(struct batch *b)
 {
-    double *all[] = {b->px, b->py, b->pz, b->u[0], b->u[1], b->u[2], b->x, b->y, b->z, b->density, b->kept};
+    double *all[] = {b->nx, b->ny, b->nz, b->px, b->py, b->pz, b->u[0], b->u[1], b->u[2], b->x, b->y, b->z, b->density, b->kept};
     for (size_t i = 0; i < sizeof all / sizeof *all; i++)
         free(all[i]);
+}
+
+static inline void batch_normals(struct batch *b)
+{
+    b->at.nx = b->nx, b->at.ny = b->ny, b->at.nz = b->nz;
 }
 
 /* All lanes at one point. */

@@ -59,6 +59,7 @@ compare 'cornell-box, bsdf and light' "$srcdir/scenes/cornell-box.scn" --spp 5 -
 sed 's/filter box/filter mitchell/' "$srcdir/scenes/cornell-box.scn" >"$TMPDIR/mitchell.scn"
 check 'a scene with mitchell' grep -q 'filter mitchell' "$TMPDIR/mitchell.scn"
 compare 'cornell-box, mitchell' "$TMPDIR/mitchell.scn" --spp 21
+for source in halton bluenoise antithetic; do compare "cornell-box, $source" "$srcdir/scenes/cornell-box.scn" --spp 7 --sampler "$source(nee)"; done
 
 quirks=clamp,background-at-limit,disk-polar,sphere-spherical,floor-sqrt
 compare 'spheres-thinlens, every quirk' "$srcdir/scenes/spheres-thinlens.scn" --spp 21 --sampler 'stratified(mixture(cosine 1, light 1))' --compat $quirks

@@ -34,22 +34,6 @@ render "$box" --sampler "sobol($mixture)" --size 32x32 --spp 1024 --replicates 6
 holds 'x > 0 && y > 0 && y < x && y < 0.003 * b && abs(a - b) <= 4 * sqrt(x ^ 2 + y ^ 2)' a="$reference" b="$mean" x="$reference_error" y="$error"
 point $? "Cornell box: $mean +- $error, independent $reference +- $reference_error"
 
-# rate WHAT SCENE SAMPLER LIMIT ARGUMENT...: the slope of log variance over log N, N = 4 ... 256 samples a replicate, is below LIMIT by 4 standard errors.
-# Variances of the mean over the picture; with 64 replicates each log2 errs by sqrt(2/63) / ln 2 = .257, the slope by .257 / sqrt(28) = .049.
-rate()
-{
-    local what=$1 scene=$2 sampler=$3 limit=$4 m points=
-    shift 4
-    for m in 2 3 4 5 6 7 8; do
-        render "$scene" --sampler "$sampler" --size 4x4 --spp $((64 << m)) --replicates 64 --seed 8 "$@"
-        points="$points$m $error
-"
-    done
-    slope=$(awk 'NF { s += ($1 - 5) / 28 * 2 * log($2) / log(2); n++ } END { printf "%.3f", n == 7 ? s : 0 }' <<<"$points")
-    holds 'slope + 4 * 0.049 < limit' slope="$slope" limit="$limit"
-    point $? "$what, $sampler: the variance falls as N^$slope, expected below N^$limit"
-}
-
 # Smooth direct light, 2 dimensions: N^-3 log N; an edge through the pixels: N^-1.5; independent numbers: N^-1, which shows that this measures.
 rate 'smooth light' "$TMPDIR/scene.scn" 'sobol(light(by=area))' -2.3
 rate 'smooth light' "$TMPDIR/scene.scn" 'sobol(cosine)' -1.2

@@ -147,10 +147,11 @@ int main(void)
     good("stratified(n=4, m=4, mixture(light(by=area) 1, cosine 1))", "stratified(n=4, m=4, mixture(light(by=area) 1, cosine 1))", 1, 4,
          MCR_COVERS_REFLECTION | MCR_COVERS_EMITTERS);
     good("stratified(n=0, cosine)", "stratified(cosine)", 1, 2, MCR_COVERS_REFLECTION);
+    good("stratified(antithetic(of=bounces, sobol(cosine)))", "stratified(antithetic(of=bounces, sobol(cosine)))", 3, 2, MCR_COVERS_REFLECTION);
     good("independent(stratified(uniform))", "independent(stratified(uniform))", 2, 2, MCR_COVERS_REFLECTION);
 
     bad("cosin", 1, "--sampler:1:1: error: unknown sampler 'cosin', expected the name of a plugin\n--sampler:1:1: note: did you mean 'cosine'?\n");
-    bad("xyzzyplugh", 1, "--sampler:1:1: error: unknown sampler 'xyzzyplugh', expected the name of a plugin\nnote: plugins found: bsdf, conductor, ...");
+    bad("xyzzyplugh", 1, "--sampler:1:1: error: unknown sampler 'xyzzyplugh', expected the name of a plugin\nnote: plugins found: antithetic, bluenoise, ...");
     bad("lambert", 1, "--sampler:1:1: error: 'lambert' is a material, expected a sampler\n");
     bad("3", 1, "--sampler:1:1: error: this is a number, expected a sampler, as in mixture(cosine 1, light 1)\n");
     bad("light", 0, "--sampler:1:1: error: 'light' has nothing to draw: no emitter of this scene can be sampled\n");

@@ -133,7 +133,7 @@ static void test_variance(void)
     for (uint32_t c = 0; c < sizeof counts / sizeof *counts; c++)
         for (uint32_t q = 0; q < sizeof pairs / sizeof *pairs; q++) {
             uint32_t a = pairs[q][1], b = pairs[q][2];
-            struct measured at = measure(counts[c], pairs[q][0], a, b, 16384);
+            struct measured at = measure(counts[c], pairs[q][0], a, b, counts[c] < 20 ? 8192 : 6000);
 
             worst = fmax(worst, fabs(at.variance - expected(base[a], a == b ? 0 : base[b], counts[c])) / at.error);
             worst_mean = fmax(worst_mean, fabs(at.mean) / at.mean_error);
