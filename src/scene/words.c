@@ -97,6 +97,8 @@ static const struct mcr_parameter render[] = {
     [RENDER_MIS] = CHOICE("mis", "balance|power", "Heuristic by which techniques are combined."),
     [RENDER_BATCH] = ROW("batch", MCR_TYPE_INTEGER, 0, "", 0, 65536, 0, 0, 0, "Paths in a batch; 0 chooses."),
     [RENDER_COMPAT] = WORD("compat", MCR_WORD_COMPAT, 0, "Known mistakes to make on purpose, so that a study can show what each does; none by default."),
+    [RENDER_TEXTURE_MEMORY] = ROW("texture_memory", MCR_TYPE_NUMBER, ABOVE, "MiB", 0, 1048576, MCR_TEXTURE_MEMORY, 0, 0,
+                                  "What the pictures of all textures may take together; those that take more are reduced."),
 };
 
 #define WORDS(word, words, text)                                                                                                   \
@@ -252,6 +254,23 @@ static const struct mcr_parameter surface[SURFACE_COUNT] = {
     [SURFACE_BUMP] = WORD("bump", MCR_WORD_TEXTURE, 0, "Texture of heights that tilt the shading normal."),
     [SURFACE_BUMP_HEIGHT] = ROW("bump_height", MCR_TYPE_NUMBER, 0, "", -FAR, FAR, 0, 0, 0, "Length that the height 1 stands for; needed with bump."),
 };
+static const struct mcr_parameter image[] = {
+    TEXTURE,
+    [IMAGE_FILE] = WORD("file", MCR_WORD_TEXT, REQUIRED, "The picture, relative to the file that names it."),
+    [IMAGE_WRAP] = WORD("wrap", MCR_WORD_WRAP, 0, "What is beside the picture; repeat by default."),
+    [IMAGE_FILTER] = { .size = sizeof(struct mcr_parameter), .type = MCR_TYPE_CHOICE, .name = "filter", .unit = "",
+                       .choices = "nearest|bilinear|mipmap", .fallback = { 1 }, .summary = "How a value is made of texels." },
+    [IMAGE_COLOUR] = CHOICE("colour", "auto|linear|srgb", "How numbers are encoded; auto goes by the file."),
+    [IMAGE_CHANNEL] = CHOICE("channel", "auto|red|green|blue|alpha|luminance", "One number instead of the colour."),
+};
+static const struct mcr_parameter gradient[] = {
+    TEXTURE,
+    [GRADIENT_FROM] = ROW("from", MCR_TYPE_COLOUR, 0, "", -FAR, FAR, 0, 0, 0, "Colour at the start, with to."),
+    [GRADIENT_TO] = ROW("to", MCR_TYPE_COLOUR, 0, "", -FAR, FAR, 0, 0, 0, "Colour at the end."),
+    [GRADIENT_STOPS] = WORD("stops", MCR_WORD_STOPS, 0, "Or positions from 0 to 1 in ascending order, each with its colour."),
+    [GRADIENT_ALONG] = CHOICE("along", "u|v|radial", "From left to right, from bottom to top, or from (0.5, 0.5) to a distance of 0.5."),
+    [GRADIENT_WRAP] = CHOICE("wrap", "clamp|repeat|mirror", "What comes before the start and behind the end."),
+};
 
 #define BLOCK(word, kind, role, table, text) { word, kind, role, COUNT(table), table, text }
 
@@ -263,7 +282,9 @@ const struct mcr_block_word mcr_scene_blocks[] = {
     BLOCK("render", NULL, MCR_BLOCK_RENDER, render, "How it is computed."),
     BLOCK("study", NULL, MCR_BLOCK_STUDY, study, "What `mcrender study` compares; other commands check it and do without."),
     BLOCK("material", NULL, MCR_BLOCK_MATERIAL, surface, "A named material; its kind is a plugin, whose parameters are its settings, beside these."),
+    BLOCK("texture", "image", MCR_BLOCK_TEXTURE, image, "A picture from a file."),
     BLOCK("texture", "checker", MCR_BLOCK_TEXTURE, checker, "Two colours, field by field."),
+    BLOCK("texture", "gradient", MCR_BLOCK_TEXTURE, gradient, "Colours that pass into each other."),
     BLOCK("light", "point", MCR_BLOCK_LIGHT, point, "A point that radiates alike in all directions."),
     BLOCK("light", "spot", MCR_BLOCK_LIGHT, spot, "A point that radiates into a cone."),
     BLOCK("light", "sun", MCR_BLOCK_LIGHT, sun, "Parallel light, or a disk that is infinitely far."),
