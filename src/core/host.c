@@ -349,7 +349,7 @@ int32_t mcr_group_draw(struct mcr_batch *batch, const struct mcr_range *range, c
 {
     const struct mcr_group *group = &batch->core->group[range->group];
     struct mcr_points at = mcr_batch_points(batch, range->begin, range->end);
-    struct mcr_inputs inputs = mcr_group_inputs(batch, group, batch->at.material, range->begin, range->end);
+    struct mcr_inputs inputs = mcr_group_inputs(batch, group, range->begin);
     struct frame was = enter(batch, group->node, mcr_material_bytes(group, at.n));
     int32_t status = group->plugin->draw(&batch->core->host, &batch->context, group->instance, &inputs, &at, number, out, density);
     return leave(batch, &was, status);
@@ -359,7 +359,7 @@ int32_t mcr_group_albedo(struct mcr_batch *batch, const struct mcr_range *range,
 {
     const struct mcr_group *group = &batch->core->group[range->group];
     struct mcr_points at = mcr_batch_points(batch, range->begin, range->end);
-    struct mcr_inputs inputs = mcr_group_inputs(batch, group, batch->at.material, range->begin, range->end);
+    struct mcr_inputs inputs = mcr_group_inputs(batch, group, range->begin);
     struct frame was = enter(batch, group->node, mcr_material_bytes(group, at.n));
     int32_t status = group->plugin->albedo(&batch->core->host, &batch->context, group->instance, &inputs, &at, out);
     return leave(batch, &was, status);
