@@ -142,7 +142,10 @@ struct mcr_technique {
 #define MCR_LIGHT_BY_AREA 0u        /* uniform on its surface */
 #define MCR_LIGHT_BY_SOLID_ANGLE 1u /* uniform in solid angle where that is stable, else by area with the area's density */
 
-/* n points on emitters, as emitter techniques exchange them with the host. */
+/*
+ * n points on emitters, as emitter techniques exchange them with the host. All that shines from infinitely far, an environment and suns with an
+ * extent, is one emitter, whose number is behind those of the others: its distance is INFINITY, only w says where the point is, and q is unused.
+ */
 struct mcr_emitter_points {
     uint32_t size;
     uint32_t n;

@@ -296,7 +296,7 @@ const struct mcr_block_word mcr_scene_blocks[] = {
     BLOCK("box", NULL, MCR_BLOCK_SHAPE, box, "A box along the axes; its front is outside."),
     BLOCK("triangle", NULL, MCR_BLOCK_SHAPE, triangle, "One triangle."),
     BLOCK("mesh", NULL, MCR_BLOCK_SHAPE, mesh, "Triangles and quadrilaterals that share vertices."),
-    BLOCK("group", NULL, MCR_BLOCK_GROUP, group, "Shapes and groups that are moved together."),
+    BLOCK("group", NULL, MCR_BLOCK_GROUP, group, "Shapes, lights and groups that are moved together."),
     BLOCK("transform", NULL, MCR_BLOCK_TRANSFORM, transform, "Steps, applied to points in the order of the text."),
     BLOCK("reference", NULL, MCR_BLOCK_REFERENCE, reference, "What a study measures against."),
 };
