@@ -137,6 +137,7 @@ static const struct mcr_item *single(struct mcr_build *build, const struct mcr_i
 static void build_all(struct mcr_build *build, const struct mcr_item *root)
 {
     const uint32_t top = SHAPES | ROLE(MCR_BLOCK_CAMERA) | ROLE(MCR_BLOCK_FILM) | ROLE(MCR_BLOCK_RENDER) | ROLE(MCR_BLOCK_MATERIAL) |
+                         ROLE(MCR_BLOCK_TEXTURE) |
                          ROLE(MCR_BLOCK_STUDY);
     const struct mcr_item *camera = single(build, root, "camera");
     struct mcr_transform to_camera;
@@ -150,6 +151,9 @@ static void build_all(struct mcr_build *build, const struct mcr_item *root)
     mcr_build_camera(build, camera);
     mcr_build_film(build, single(build, root, "film"));
     mcr_build_render(build, single(build, root, "render"));
+    mcr_build_textures(build, root);
+    if (build->short_of_memory)
+        return;
     mcr_build_materials(build, root);
     if (build->short_of_memory)
         return;
@@ -157,6 +161,7 @@ static void build_all(struct mcr_build *build, const struct mcr_item *root)
     mcr_build_geometry(build, root, &to_camera);
     mcr_build_unused_materials(build);
     mcr_build_light_names(build);
+    mcr_build_unused_textures(build);
     if (build->short_of_memory)
         return;
     mcr_build_lights(build);

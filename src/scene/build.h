@@ -29,6 +29,12 @@ struct mcr_build {
         uint32_t number;
     } *named_lights;                       /* in the order of the text, then by name */
     uint32_t named_light_count;
+    struct mcr_named_texture {
+        const char *name;
+        uint32_t number;
+    } *textures;                           /* by name */
+    const char **texture_names;            /* the same, for suggestions */
+    uint8_t *texture_used;                 /* by texture */
 
     uint64_t vertex_room, triangle_room, normal_room, uv_room;
     int planes_emit;                       /* a plane's material emits */
@@ -121,6 +127,16 @@ void mcr_build_materials(struct mcr_build *build, const struct mcr_item *root);
 /* The number of the material that a shape names; -1 after an error. */
 int64_t mcr_build_find_material(struct mcr_build *build, const struct mcr_settings *settings);
 void mcr_build_unused_materials(struct mcr_build *build);
+
+/* textures.c: before materials, which name them. */
+void mcr_build_textures(struct mcr_build *build, const struct mcr_item *root);
+/* The texture that a value of kind MCR_VALUE_NAME names, which counts as used from here on; NULL after an error. In a scene with errors
+ * its colours may be all 0. */
+const struct mcr_texture *mcr_build_find_texture(struct mcr_build *build, const struct mcr_value *value);
+/* Whether there is a texture of this name; nothing is told, and it is not used by that. */
+int mcr_build_is_texture(const struct mcr_build *build, const char *name);
+/* After all that may name textures. */
+void mcr_build_unused_textures(struct mcr_build *build);
 
 /* All shapes and groups of the root block. */
 void mcr_build_geometry(struct mcr_build *build, const struct mcr_item *root, const struct mcr_transform *to_camera);

@@ -17,6 +17,7 @@
 #include "plugin/registry.h"
 #include "scene/lights.h"
 #include "scene/study.h"
+#include "scene/texture.h"
 
 enum mcr_shape_kind {
     MCR_SHAPE_PLANE,         /* infinite: c a point, n */
@@ -56,6 +57,12 @@ struct mcr_scene_material {
     struct mcr_place place;
     struct mcr_node *node;                       /* descriptor is a struct mcr_material_plugin */
     struct mcr_material_traits traits;
+};
+
+struct mcr_scene_texture {
+    const char *name;
+    struct mcr_place place;
+    const struct mcr_texture *texture;
 };
 
 enum mcr_camera_kind { MCR_CAMERA_PERSPECTIVE, MCR_CAMERA_ORTHOGRAPHIC, MCR_CAMERA_THIN_LENS };
@@ -140,6 +147,8 @@ struct mcr_scene {
     struct mcr_sampler *sampler;
     uint32_t material_count;
     struct mcr_scene_material *material;
+    uint32_t texture_count;
+    struct mcr_scene_texture *texture;
     uint32_t shape_count;
     struct mcr_shape *shape;
     struct mcr_triangles triangles;

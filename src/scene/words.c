@@ -228,6 +228,19 @@ static const struct mcr_parameter transform[] = {
     [STEP_LOOKAT] = WORD("lookat", MCR_WORD_LOOKAT, 0, "Puts the origin at `from`, turns +z toward `to` and +y toward `up`."),
 };
 
+#define TEXTURE                                                                                                                    \
+    [TEXTURE_SCALE] = ROW("scale", MCR_WORD_PAIR_OR_NUMBER, 0, "", -MCR_TEXTURE_SCALE_MOST, MCR_TEXTURE_SCALE_MOST, 1, 1, 0,        \
+                          "Multiplies u and v, by one factor or two: how often the texture stands along a unit."),                \
+    [TEXTURE_OFFSET] = ROW("offset", MCR_WORD_UV, 0, "", -MCR_TEXTURE_SCALE_MOST, MCR_TEXTURE_SCALE_MOST, 0, 0, 0,                  \
+                           "Added to u and v after that.")
+
+static const struct mcr_parameter checker[] = {
+    TEXTURE,
+    [CHECKER_EVEN] = ROW("even", MCR_TYPE_COLOUR, REQUIRED, "", -FAR, FAR, 0, 0, 0, "Colour of the field at (0, 0) to (1, 1)."),
+    [CHECKER_ODD] = ROW("odd", MCR_TYPE_COLOUR, REQUIRED, "", -FAR, FAR, 0, 0, 0, "Colour of its neighbours."),
+    [CHECKER_FILTER] = CHOICE("filter", "box|none", "Whether a footprint sees the mean of what it covers."),
+};
+
 #define BLOCK(word, kind, role, table, text) { word, kind, role, COUNT(table), table, text }
 
 const struct mcr_block_word mcr_scene_blocks[] = {
@@ -242,6 +255,7 @@ const struct mcr_block_word mcr_scene_blocks[] = {
     BLOCK("light", "spot", MCR_BLOCK_LIGHT, spot, "A point that radiates into a cone."),
     BLOCK("light", "sun", MCR_BLOCK_LIGHT, sun, "Parallel light, or a disk that is infinitely far."),
     BLOCK("light", "environment", MCR_BLOCK_LIGHT, environment, "Light from infinitely far all around; a scene has at most one."),
+    BLOCK("texture", "checker", MCR_BLOCK_TEXTURE, checker, "Two colours, field by field."),
     BLOCK("plane", NULL, MCR_BLOCK_SHAPE, plane, "An infinite plane."),
     BLOCK("sphere", NULL, MCR_BLOCK_SHAPE, sphere, "A sphere; its front is outside."),
     BLOCK("quad", NULL, MCR_BLOCK_SHAPE, quad, "A parallelogram, or any flat convex quadrilateral."),
@@ -307,6 +321,10 @@ const char *mcr_word_form(uint32_t type)
         [MCR_WORD_WHOLES] = "a whole number or a tuple of them",
         [MCR_WORD_CHOICES] = "a word or a tuple of words",
         [MCR_WORD_COMPATS] = "none, a quirk such as clamp, or a tuple of these and of tuples",
+        [MCR_WORD_PAIR_OR_NUMBER] = "a number or 2 numbers (u, v)",
+        [MCR_WORD_UV] = "2 numbers (u, v)",
+        [MCR_WORD_WRAP] = "repeat, mirror or clamp, or 2 of them (for u, for v)",
+        [MCR_WORD_STOPS] = "a tuple of stops (position, colour)",
         [MCR_WORD_TRANSFORM] = "a block transform { ... }",
         [MCR_TYPE_NUMBER] = "a number",
         [MCR_TYPE_INTEGER] = "a whole number",
