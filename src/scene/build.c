@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The tree of a scene file becomes an immutable scene: the order of the work, room for the geometry, and groups. */
 #include "scene/build.h"
+#include "scene/texture_table.h"
 #include "scene/vector.h"
 
 #define ROLE(role) (1u << (role))
@@ -196,6 +197,10 @@ void mcr_scene_destroy(struct mcr_scene *scene)
     for (uint32_t i = 0; i < scene->material_count; i++)
         if (scene->material[i].node)
             mcr_material_destroy(scene->material[i].node);
+    for (uint32_t i = 0; i < scene->texture_count; i++)
+        if (scene->texture[i].texture)
+            mcr_texture_release(scene->texture[i].texture);
     scene->sampler = NULL;
+    scene->texture_count = 0;
     scene->material_count = 0;
 }

@@ -35,6 +35,7 @@ struct mcr_build {
     } *textures;                           /* by name */
     const char **texture_names;            /* the same, for suggestions */
     uint8_t *texture_used;                 /* by texture */
+    uint64_t texture_memory, texture_bytes; /* what pictures may take and what they take */
 
     uint64_t vertex_room, triangle_room, normal_room, uv_room;
     int planes_emit;                       /* a plane's material emits */
@@ -135,6 +136,8 @@ void mcr_build_textures(struct mcr_build *build, const struct mcr_item *root);
 const struct mcr_texture *mcr_build_find_texture(struct mcr_build *build, const struct mcr_value *value);
 /* Whether there is a texture of this name; nothing is told, and it is not used by that. */
 int mcr_build_is_texture(const struct mcr_build *build, const char *name);
+/* texture_image.c: the settings of one that is a picture. */
+void mcr_build_image(struct mcr_build *build, const struct mcr_settings *settings, struct mcr_texture *texture);
 /* After all that may name textures. */
 void mcr_build_unused_textures(struct mcr_build *build);
 

@@ -62,7 +62,7 @@ struct mcr_scene_material {
 struct mcr_scene_texture {
     const char *name;
     struct mcr_place place;
-    const struct mcr_texture *texture;
+    struct mcr_texture *texture; /* immutable once the scene is built */
 };
 
 enum mcr_camera_kind { MCR_CAMERA_PERSPECTIVE, MCR_CAMERA_ORTHOGRAPHIC, MCR_CAMERA_THIN_LENS };

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * Textures: colours over (u, v), made by blocks `texture NAME KIND { … }`. Immutable, in the scene's arena; may be used from any thread.
+ * Textures: colours over (u, v), made by blocks `texture NAME KIND { … }`. Immutable, the scene's; may be used from any thread.
  * u grows to the right and v upward: a picture stands upright on the unit square, its lower left corner at (0, 0).
  */
 #ifndef MCR_SCENE_TEXTURE_H

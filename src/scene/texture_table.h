@@ -25,6 +25,7 @@ struct mcr_texture_image {
     uint32_t filter;
     uint32_t wrap[2];
     uint32_t channels;    /* 1 or 3 */
+    void *memory;         /* of all levels; from malloc */
     uint32_t level_count; /* 1 unless filter is MCR_TEXTURE_MIPMAP */
     struct mcr_texture_level level[MCR_TEXTURE_LEVELS];
     float decode[256];    /* of codes */
@@ -52,5 +53,8 @@ struct mcr_texture {
     struct mcr_texture_checker checker;
     struct mcr_texture_gradient gradient;
 };
+
+/* Frees what is not in the arena. */
+void mcr_texture_release(struct mcr_texture *texture);
 
 #endif

@@ -72,6 +72,110 @@ static void build_checker(struct mcr_build *build, const struct mcr_settings *se
     }
 }
 
+/* ---- gradient ---- */
+
+/* The colours at 0 and 1; -1 after an error. */
+static int read_ends(struct mcr_build *build, const struct mcr_settings *settings, double position[2], double (*colour)[3])
+{
+    uint32_t missing = settings->value[GRADIENT_FROM] ? GRADIENT_TO : GRADIENT_FROM;
+    position[1] = 1;
+    if (!settings->value[missing]) {
+        if (!settings->damaged && !(settings->misspelt & 1u << missing))
+            mcr_error(build, settings->place, "a gradient needs '%s', expected from and to, or stops", settings->word->setting[missing].name);
+        return -1;
+    }
+    return mcr_read_colour(build, settings, GRADIENT_FROM, colour[0]) | mcr_read_colour(build, settings, GRADIENT_TO, colour[1]) ? -1 : 0;
+}
+
+/* One stop (position, colour), not before `least`; -1 after an error. */
+static int read_stop(struct mcr_build *build, const struct mcr_settings *settings, const struct mcr_value *item, double least, double *position,
+                     double colour[3])
+{
+    static const struct mcr_parameter row = { .size = sizeof row, .type = MCR_TYPE_COLOUR, .name = "stops", .unit = "", .summary = "",
+                                              .min = -MCR_EXTENT_LIMIT, .max = MCR_EXTENT_LIMIT };
+    const struct mcr_value *stop = mcr_value_resolve(item), *at;
+    at = stop->kind == MCR_VALUE_TUPLE && stop->count == 2 ? mcr_value_resolve(&stop->item[0]) : NULL;
+    if (!at || (at->kind != MCR_VALUE_NUMBER && at->kind != MCR_VALUE_ERROR))
+        return mcr_wrong_kind(build, item, row.name, settings->of, "stops (position, colour)");
+    if (at->kind == MCR_VALUE_ERROR || mcr_value_resolve(&stop->item[1])->kind == MCR_VALUE_ERROR)
+        return -1;
+    if (!(at->number >= least && at->number <= 1)) {
+        mcr_error(build, stop->item[0].place, "a stop stands at %.10g, expected ascending positions from 0 to 1", at->number);
+        return -1;
+    }
+    *position = at->number;
+    return mcr_value_check(build->diagnostics, &row, &stop->item[1], settings->of, colour);
+}
+
+/* Stops from the text, with one more at each end; -1 after an error. */
+static int read_stops(struct mcr_build *build, const struct mcr_settings *settings, const struct mcr_value *list, double *position,
+                      double (*colour)[3])
+{
+    for (uint32_t k = 1; k <= list->count; k++)
+        if (read_stop(build, settings, &list->item[k - 1], position[k - 1], &position[k], colour[k]) != 0)
+            return -1;
+    memcpy(colour[0], colour[1], sizeof colour[0]);
+    position[list->count + 1] = 1;
+    memcpy(colour[list->count + 1], colour[list->count], sizeof colour[0]);
+    return 0;
+}
+
+/* The bounds of the stops, and the mean of a grid over the unit square. */
+static void bound_gradient(struct mcr_texture *texture)
+{
+    enum { SIDE = 64 };
+    const struct mcr_texture_gradient *gradient = &texture->gradient;
+    struct mcr_texture_bounds *bounds = &texture->bounds;
+    double u[SIDE], v[SIDE], out[3][SIDE];
+    texture->grey = 1;
+    for (uint32_t k = 0; k < gradient->count; k++) {
+        texture->grey &= is_grey(gradient->colour[k]);
+        for (int c = 0; c < 3; c++) {
+            bounds->min[c] = k == 0 ? gradient->colour[k][c] : fmin(bounds->min[c], gradient->colour[k][c]);
+            bounds->max[c] = k == 0 ? gradient->colour[k][c] : fmax(bounds->max[c], gradient->colour[k][c]);
+        }
+    }
+    for (uint32_t row = 0; row < SIDE; row++) {
+        for (uint32_t i = 0; i < SIDE; i++) {
+            u[i] = (i + 0.5) / SIDE;
+            v[i] = (row + 0.5) / SIDE;
+        }
+        mcr_texture_lookup(texture, SIDE, u, v, NULL, out[0], out[1], out[2]);
+        for (uint32_t i = 0; i < SIDE; i++)
+            for (int c = 0; c < 3; c++)
+                bounds->mean[c] += out[c][i] / (SIDE * SIDE);
+    }
+}
+
+static void build_gradient(struct mcr_build *build, const struct mcr_settings *settings, struct mcr_texture *texture)
+{
+    struct mcr_texture_gradient *gradient = &texture->gradient;
+    const struct mcr_value *value = settings->value[GRADIENT_STOPS], *list = value ? mcr_value_resolve(value) : NULL;
+    int ends = settings->value[GRADIENT_FROM] || settings->value[GRADIENT_TO], failed;
+    double *position, (*colour)[3];
+    gradient->along = read_choice(build, settings, GRADIENT_ALONG);
+    gradient->wrap = (uint32_t[]){ MCR_WRAP_CLAMP, MCR_WRAP_REPEAT, MCR_WRAP_MIRROR }[read_choice(build, settings, GRADIENT_WRAP)];
+    if (list && ends) {
+        mcr_error(build, settings->key[GRADIENT_STOPS], "a gradient has 'stops' or 'from' and 'to', expected one of these");
+        return;
+    }
+    if (list && (list->kind != MCR_VALUE_TUPLE || list->count < 2 || list->count > MCR_TEXTURE_STOPS)) {
+        mcr_wrong_kind(build, value, "stops", settings->of, "a tuple of 2 to 256 stops (position, colour)");
+        return;
+    }
+    gradient->count = list ? list->count + 2 : 2;
+    gradient->position = position = mcr_build_alloc(build, gradient->count, sizeof *position);
+    colour = mcr_build_alloc(build, gradient->count, sizeof *colour);
+    gradient->colour = (const double(*)[3])colour;
+    if (!position || !colour)
+        return;
+    failed = list ? read_stops(build, settings, list, position, colour) : read_ends(build, settings, position, colour);
+    if (failed)
+        return;
+    texture->kind = MCR_TEXTURE_GRADIENT;
+    bound_gradient(texture);
+}
+
 /* ---- blocks ---- */
 
 /* Records that the kind is absent or unknown. */
@@ -101,14 +205,19 @@ static void create(struct mcr_build *build, const struct mcr_item *block, struct
     if (!texture)
         return;
     named->texture = texture;
+    texture->kind = MCR_TEXTURE_CHECKER; /* what is wrong is black */
     if (!word) {
         unknown_kind(build, block);
         return;
     }
     mcr_settings_match(build, block, word, 0, &settings);
     read_placement(build, &settings, texture);
-    texture->kind = MCR_TEXTURE_CHECKER;
-    build_checker(build, &settings, texture);
+    if (strcmp(word->kind, "image") == 0)
+        mcr_build_image(build, &settings, texture);
+    else if (strcmp(word->kind, "gradient") == 0)
+        build_gradient(build, &settings, texture);
+    else
+        build_checker(build, &settings, texture);
 }
 
 static int by_name(const void *a, const void *b)

@@ -95,6 +95,8 @@ static const struct mcr_parameter render[] = {
     [RENDER_MIS] = CHOICE("mis", "balance|power", "Heuristic by which techniques are combined."),
     [RENDER_BATCH] = ROW("batch", MCR_TYPE_INTEGER, 0, "", 0, 65536, 0, 0, 0, "Paths in a batch; 0 chooses."),
     [RENDER_COMPAT] = WORD("compat", MCR_WORD_COMPAT, 0, "Known mistakes to make on purpose, so that a study can show what each does; none by default."),
+    [RENDER_TEXTURE_MEMORY] = ROW("texture_memory", MCR_TYPE_NUMBER, ABOVE, "MiB", 0, 1048576, MCR_TEXTURE_MEMORY, 0, 0,
+                                  "What the pictures of all textures may take together; those that take more are reduced."),
 };
 
 #define WORDS(word, words, text)                                                                                                   \
@@ -241,6 +243,24 @@ static const struct mcr_parameter checker[] = {
     [CHECKER_FILTER] = CHOICE("filter", "box|none", "Whether a footprint sees the mean of what it covers."),
 };
 
+static const struct mcr_parameter image[] = {
+    TEXTURE,
+    [IMAGE_FILE] = WORD("file", MCR_WORD_TEXT, REQUIRED, "The picture, relative to the file that names it."),
+    [IMAGE_WRAP] = WORD("wrap", MCR_WORD_WRAP, 0, "What is beside the picture; repeat by default."),
+    [IMAGE_FILTER] = { .size = sizeof(struct mcr_parameter), .type = MCR_TYPE_CHOICE, .name = "filter", .unit = "",
+                       .choices = "nearest|bilinear|mipmap", .fallback = { 1 }, .summary = "How a value is made of texels." },
+    [IMAGE_COLOUR] = CHOICE("colour", "auto|linear|srgb", "How numbers are encoded; auto goes by the file."),
+    [IMAGE_CHANNEL] = CHOICE("channel", "auto|red|green|blue|alpha|luminance", "One number instead of the colour."),
+};
+static const struct mcr_parameter gradient[] = {
+    TEXTURE,
+    [GRADIENT_FROM] = ROW("from", MCR_TYPE_COLOUR, 0, "", -FAR, FAR, 0, 0, 0, "Colour at the start, with to."),
+    [GRADIENT_TO] = ROW("to", MCR_TYPE_COLOUR, 0, "", -FAR, FAR, 0, 0, 0, "Colour at the end."),
+    [GRADIENT_STOPS] = WORD("stops", MCR_WORD_STOPS, 0, "Or positions from 0 to 1 in ascending order, each with its colour."),
+    [GRADIENT_ALONG] = CHOICE("along", "u|v|radial", "From left to right, from bottom to top, or from (0.5, 0.5) to a distance of 0.5."),
+    [GRADIENT_WRAP] = CHOICE("wrap", "clamp|repeat|mirror", "What comes before the start and behind the end."),
+};
+
 #define BLOCK(word, kind, role, table, text) { word, kind, role, COUNT(table), table, text }
 
 const struct mcr_block_word mcr_scene_blocks[] = {
@@ -255,7 +275,9 @@ const struct mcr_block_word mcr_scene_blocks[] = {
     BLOCK("light", "spot", MCR_BLOCK_LIGHT, spot, "A point that radiates into a cone."),
     BLOCK("light", "sun", MCR_BLOCK_LIGHT, sun, "Parallel light, or a disk that is infinitely far."),
     BLOCK("light", "environment", MCR_BLOCK_LIGHT, environment, "Light from infinitely far all around; a scene has at most one."),
+    BLOCK("texture", "image", MCR_BLOCK_TEXTURE, image, "A picture from a file."),
     BLOCK("texture", "checker", MCR_BLOCK_TEXTURE, checker, "Two colours, field by field."),
+    BLOCK("texture", "gradient", MCR_BLOCK_TEXTURE, gradient, "Colours that pass into each other."),
     BLOCK("plane", NULL, MCR_BLOCK_SHAPE, plane, "An infinite plane."),
     BLOCK("sphere", NULL, MCR_BLOCK_SHAPE, sphere, "A sphere; its front is outside."),
     BLOCK("quad", NULL, MCR_BLOCK_SHAPE, quad, "A parallelogram, or any flat convex quadrilateral."),

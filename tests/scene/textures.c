@@ -73,8 +73,36 @@ static void checker_filter(void)
     close_world(&world);
 }
 
+static void gradient(void)
+{
+    struct world world;
+    const struct mcr_texture *t = texture_of(&world, "texture a gradient { from (1, 0, 0) to (0, 0.5, 4) }");
+    ok(is(look(t, 0, 9, -1), 1, 0, 0, 0) && is(look(t, 0.25, -3, 7), 0.75, 0.125, 1, 1e-15) && is(look(t, 1, 0, 0), 0, 0.5, 4, 0),
+       "gradient along u");
+    ok(is(look(t, -5, 0, -1), 1, 0, 0, 0) && is(look(t, 1e9, 0, -1), 0, 0.5, 4, 0) && is(look(t, NAN, INFINITY, -1), 1, 0, 0, 0),
+       "its ends go on");
+    ok(!mcr_texture_uses_width(t) && !mcr_texture_is_grey(t) && mcr_texture_bounds(t)->max[2] == 4 &&
+       is((struct colour){ mcr_texture_bounds(t)->mean[0], mcr_texture_bounds(t)->mean[1], mcr_texture_bounds(t)->mean[2] }, 0.5, 0.25, 2, 1e-12),
+       "its bounds");
+    close_world(&world);
+    t = texture_of(&world, "texture a gradient { from 0 to 1 along v wrap repeat scale (1, 2) }");
+    ok(is(look(t, 5, 0.125, -1), 0.25, 0.25, 0.25, 1e-15) && is(look(t, 5, 0.625, -1), 0.25, 0.25, 0.25, 1e-15) && mcr_texture_is_grey(t),
+       "along v, twice");
+    close_world(&world);
+    t = texture_of(&world, "texture a gradient { from 0 to 1 along radial wrap mirror }");
+    ok(is(look(t, 0.5, 0.5, -1), 0, 0, 0, 0) && is(look(t, 0.8, 0.9, -1), 1, 1, 1, 1e-15) && is(look(t, 0.5, 1.25, -1), 0.5, 0.5, 0.5, 1e-15),
+       "radial, and mirrored beyond");
+    close_world(&world);
+    t = texture_of(&world, "texture a gradient { stops ((0.25, 1), (0.5, 3), (0.5, 10), (0.75, (20, 10, 10))) }");
+    ok(is(look(t, 0, 0, -1), 1, 1, 1, 0) && is(look(t, 0.375, 0, -1), 2, 2, 2, 1e-15) && is(look(t, 0.4999999999, 0, -1), 3, 3, 3, 1e-8) &&
+       is(look(t, 0.5, 0, -1), 10, 10, 10, 0) && is(look(t, 0.625, 0, -1), 15, 10, 10, 1e-14) && is(look(t, 1, 0, -1), 20, 10, 10, 0),
+       "stops, two of them at one place: a step");
+    close_world(&world);
+}
+
 int main(void)
 {
+    gradient();
     checker();
     checker_filter();
     return tap_done();
