@@ -226,13 +226,13 @@ static void *begin_pixels(void *context, const struct mcr_oiio_header *header)
     return made->memory;
 }
 
-struct mcr_pixels *mcr_module_pixels(const char *format, const unsigned char *bytes, size_t count, char *error, size_t length)
+struct mcr_pixels *mcr_module_pixels(const char *format, const unsigned char *bytes, size_t count, int data, char *error, size_t length)
 {
     const struct mcr_oiio *table = table_of(error, length);
     struct mcr_pixels *pixels = NULL;
     if (!table) return NULL;
     struct mcr_oiio_input input = {
-        .size = sizeof input, .max_side = MCR_IMAGE_MAX_SIDE, .max_channels = MCR_IMAGE_MAX_CHANNELS, .raw = 1,
+        .size = sizeof input, .max_side = MCR_IMAGE_MAX_SIDE, .max_channels = MCR_IMAGE_MAX_CHANNELS, .raw = data ? MCR_OIIO_DATA : MCR_OIIO_RAW,
         .max_bytes = MCR_IMAGE_MAX_BYTES, .format = format, .bytes = bytes, .count = count, .context = &pixels, .begin = begin_pixels,
     };
     if (!table->read(&input, error, length)) return pixels;

@@ -20,7 +20,7 @@ int mcr_module_write(const struct mcr_format *format, struct mcr_encoder *encode
 
 /* Decodes a file in memory. NULL after a failure, the reason in `error`. */
 struct mcr_image *mcr_module_read(const char *format, const unsigned char *bytes, size_t count, char *error, size_t length);
-/* The same, to numbers as the file holds them. */
-struct mcr_pixels *mcr_module_pixels(const char *format, const unsigned char *bytes, size_t count, char *error, size_t length);
+/* The same, to numbers as the file holds them. data: of any colour space. */
+struct mcr_pixels *mcr_module_pixels(const char *format, const unsigned char *bytes, size_t count, int data, char *error, size_t length);
 
 #endif

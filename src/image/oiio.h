@@ -56,10 +56,14 @@ struct mcr_oiio_header {
     uint32_t type;              /* MCR_OIIO_*: what the values are given as, where they are asked for as the file holds them */
 };
 
+/* Integers of 8 and 16 bits as they are, all others as floats; and the same whatever colours they may mean: nothing of them is judged. */
+#define MCR_OIIO_RAW 1u
+#define MCR_OIIO_DATA 2u
+
 struct mcr_oiio_input {
     uint32_t size;
     uint32_t max_side, max_channels;
-    uint32_t raw;               /* 0: all values as doubles; 1: integers of 8 and 16 bits as they are, all others as floats */
+    uint32_t raw;               /* 0: all values as doubles; MCR_OIIO_RAW, MCR_OIIO_DATA */
     uint64_t max_bytes;         /* of all values in that form */
     const char *format;
     const void *bytes;          /* the file */

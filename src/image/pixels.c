@@ -83,27 +83,28 @@ static uint64_t hash_of(const unsigned char *bytes, size_t count)
 }
 
 /* As mcr_image_decode. */
-static struct mcr_pixels *decode(const unsigned char *bytes, size_t count, char *error, size_t length)
+static struct mcr_pixels *decode(const unsigned char *bytes, size_t count, int data, char *error, size_t length)
 {
     const char *module = NULL;
     switch (mcr_format_of_bytes(bytes, count, &module)) {
     case MCR_MAGIC_PNM: return mcr_pnm_pixels(bytes, count, error, length);
     case MCR_MAGIC_PFM: return floats_of(mcr_pfm_read(bytes, count, error, length));
-    case MCR_MAGIC_MODULE: return mcr_image_needs_module(module, error, length) ? NULL : mcr_module_pixels(module, bytes, count, error, length);
+    case MCR_MAGIC_MODULE:
+        return mcr_image_needs_module(module, error, length) ? NULL : mcr_module_pixels(module, bytes, count, data, error, length);
     case MCR_MAGIC_UNKNOWN: break;
     }
     mcr_image_unknown(count, error, length);
     return NULL;
 }
 
-struct mcr_pixels *mcr_pixels_read(const char *path, char *error, size_t length)
+struct mcr_pixels *mcr_pixels_read(const char *path, int data, char *error, size_t length)
 {
     size_t count = 0;
     unsigned char *bytes = mcr_image_bytes(path, &count, error, length);
     struct mcr_pixels *pixels;
     if (!bytes) return NULL;
     if (length) error[0] = '\0';
-    pixels = decode(bytes, count, error, length);
+    pixels = decode(bytes, count, data, error, length);
     if (pixels) pixels->hash = hash_of(bytes, count);
     else if (length && !error[0]) mcr_image_fail(error, length, "not enough memory");
     free(bytes);

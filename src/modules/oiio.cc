@@ -211,7 +211,7 @@ std::string refusal(const OIIO::ImageSpec &spec, const mcr_oiio_input *input)
     if (spec.tile_width > side || spec.tile_height > side || spec.tile_width < 0 || spec.tile_height < 0 ||
         uint64_t(spec.tile_width) * uint64_t(spec.tile_height) * uint64_t(spec.nchannels) > max_values)
         return "its tiles are too large";
-    if (primaries_differ(spec)) return "its primaries (chromaticities) are not those of Rec. 709";
+    if (input->raw != MCR_OIIO_DATA && primaries_differ(spec)) return "its primaries (chromaticities) are not those of Rec. 709";
     return std::string();
 }
 
@@ -237,7 +237,7 @@ int32_t read(const mcr_oiio_input *input, char *error, uint64_t length)
         header.alpha = spec.alpha_channel;
         header.depth = spec.z_channel;
         std::string space;
-        if (!transfer(spec, header, space)) return fail(error, length, "its colour space '" + space + "' is not known");
+        if (!transfer(spec, header, space) && input->raw != MCR_OIIO_DATA) return fail(error, length, "its colour space '" + space + "' is not known");
         std::vector<const char *> names;
         for (int c = 0; c < spec.nchannels; c++) names.push_back(spec.channelnames[size_t(c)].c_str());
         header.channel = names.data();

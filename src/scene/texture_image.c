@@ -9,6 +9,11 @@
 enum { COLOUR_AUTO, COLOUR_LINEAR, COLOUR_SRGB }; /* auto|linear|srgb */
 enum { CHANNEL_AUTO, CHANNEL_RED, CHANNEL_GREEN, CHANNEL_BLUE, CHANNEL_ALPHA, CHANNEL_LUMINANCE };
 
+/* What the settings say of the numbers. */
+struct asked {
+    uint32_t colour, channel;
+};
+
 static uint32_t choice(struct mcr_build *build, const struct mcr_settings *settings, uint32_t index)
 {
     double number = settings->word->setting[index].fallback[0];
@@ -79,10 +84,10 @@ static const char *path_of(struct mcr_build *build, const struct mcr_settings *s
 }
 
 /* Which channels, and how they are decoded; -1 after an error. */
-static int read_reading(struct mcr_build *build, const struct mcr_settings *settings, const struct mcr_pixels *pixels,
+static int read_reading(struct mcr_build *build, const struct mcr_settings *settings, struct asked asked, const struct mcr_pixels *pixels,
                         struct mcr_texture_reading *reading)
 {
-    uint32_t colour = choice(build, settings, IMAGE_COLOUR), channel = choice(build, settings, IMAGE_CHANNEL);
+    uint32_t colour = asked.colour, channel = asked.channel;
     uint32_t rgb[3] = { (uint32_t)pixels->red, (uint32_t)pixels->green, (uint32_t)pixels->blue };
     int grey = rgb[0] == rgb[1] && rgb[1] == rgb[2];
     *reading = (struct mcr_texture_reading){ .transfer = pixels->transfer, .gamma = pixels->gamma, .channels = grey ? 1 : 3,
@@ -137,7 +142,7 @@ static int drop(struct mcr_build *build, const struct mcr_pixels *pixels, const 
     return dropped;
 }
 
-static void make_levels(struct mcr_build *build, const struct mcr_settings *settings, const struct mcr_pixels *pixels,
+static void make_levels(struct mcr_build *build, const struct mcr_settings *settings, struct asked asked, const struct mcr_pixels *pixels,
                         struct mcr_texture *texture)
 {
     struct mcr_place place = settings->value[IMAGE_FILE]->place;
@@ -145,7 +150,7 @@ static void make_levels(struct mcr_build *build, const struct mcr_settings *sett
     struct mcr_texture_survey survey;
     uint64_t bytes;
     int dropped;
-    if (read_reading(build, settings, pixels, &reading) != 0)
+    if (read_reading(build, settings, asked, pixels, &reading) != 0)
         return;
     dropped = drop(build, pixels, &reading, texture->image.filter == MCR_TEXTURE_MIPMAP, place, &bytes);
     if (dropped < 0)
@@ -169,19 +174,20 @@ static void make_levels(struct mcr_build *build, const struct mcr_settings *sett
 void mcr_build_image(struct mcr_build *build, const struct mcr_settings *settings, struct mcr_texture *texture)
 {
     const char *path = path_of(build, settings);
+    struct asked asked = { choice(build, settings, IMAGE_COLOUR), choice(build, settings, IMAGE_CHANNEL) };
     struct mcr_pixels *pixels;
     char reason[400];
     texture->image.filter = choice(build, settings, IMAGE_FILTER);
     read_wrap(build, settings, texture->image.wrap);
     if (!path)
         return;
-    pixels = mcr_pixels_read(path, reason, sizeof reason);
+    pixels = mcr_pixels_read(path, asked.colour == COLOUR_LINEAR, reason, sizeof reason);
     if (!pixels) {
         mcr_error(build, settings->value[IMAGE_FILE]->place, "cannot read '%s': %s", path, reason);
         return;
     }
     build->scene->hash = (build->scene->hash ^ pixels->hash) * 1099511628211u; /* FNV-1a once more: another picture is another scene */
-    make_levels(build, settings, pixels, texture);
+    make_levels(build, settings, asked, pixels, texture);
     mcr_pixels_destroy(pixels);
 }
 

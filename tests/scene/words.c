@@ -51,8 +51,8 @@ int main(void)
         ok(!judge(&mcr_tone_words[i]) && strcmp(mcr_tone_words[i].word, mcr_tone_name[i]) == 0, "the arguments of tone %s", mcr_tone_words[i].word);
     ok(!judge(&mcr_roulette_word), "the arguments of roulette on");
     for (size_t i = 0; i < count; i++) {
-        int known = strcmp(list[i], "let") == 0 || strcmp(list[i], "include") == 0 || mcr_scene_block(list[i], "perspective") ||
-            mcr_scene_block(list[i], "checker") || mcr_scene_block(list[i], "point");
+        int known = strcmp(list[i], "let") == 0 || strcmp(list[i], "include") == 0 || mcr_scene_block(list[i], "perspective") || mcr_scene_block(list[i], "checker") ||
+                    mcr_scene_block(list[i], "point");
         ok(known, "the parser's '%s' is known here", list[i]);
     }
     return tap_done();
