@@ -14,7 +14,7 @@ enum { RADIANCE, SIDES, ALBEDO, PARAMETERS };
 static const struct mcr_parameter parameters[PARAMETERS] = {
     [RADIANCE] = {.size = sizeof(struct mcr_parameter),
                   .type = MCR_TYPE_COLOUR,
-                  .flags = MCR_PARAMETER_REQUIRED,
+                  .flags = MCR_PARAMETER_REQUIRED | MCR_PARAMETER_VARYING,
                   .name = "radiance",
                   .unit = "W/(sr m^2)",
                   .summary = "Emitted radiance, the same in all directions.",

@@ -41,6 +41,19 @@ static void cut_paths(struct cutter *c, struct mcr_paths *paths, uint32_t lanes,
     }
 }
 
+/* Footprints, surface coordinates and tangents. */
+static void cut_coordinates(struct cutter *c, struct mcr_batch *b)
+{
+    struct mcr_surface_points *at = &b->at;
+    double **array[] = {&b->state.width, &b->state.spread, &b->sorted.width, &b->sorted.spread, &at->u, &at->v, &at->width, &at->gu[0],
+                        &at->gu[1], &at->gu[2], &at->gv[0], &at->gv[1], &at->gv[2]};
+    double **tangent[] = {&at->tx, &at->ty, &at->tz};
+    for (size_t i = 0; i < sizeof array / sizeof *array; i++)
+        *array[i] = cut(c, b->lanes, sizeof(double));
+    for (size_t i = 0; i < 3 && b->core->charts.needs & MCR_NEEDS_TANGENTS; i++)
+        *tangent[i] = cut(c, b->lanes, sizeof(double));
+}
+
 /* Arrays for combining techniques. */
 static void cut_light(struct cutter *c, struct mcr_light_lanes *l, uint32_t lanes)
 {
@@ -56,6 +69,39 @@ static void cut_light(struct cutter *c, struct mcr_light_lanes *l, uint32_t lane
     l->lane = cut(c, lanes, sizeof *l->lane);
     l->material = cut(c, lanes, sizeof *l->material);
     l->of = cut(c, lanes, sizeof *l->of);
+}
+
+static void cut_elsewhere(struct cutter *c, struct mcr_batch *b)
+{
+    struct mcr_elsewhere *e = &b->elsewhere;
+    double **array[] = {&e->u, &e->v, &e->width, &e->gu[0], &e->gu[1], &e->gu[2], &e->gv[0], &e->gv[1], &e->gv[2]};
+    e->input = cut(c, (size_t)b->core->channels * b->lanes, sizeof(double));
+    for (size_t i = 0; i < sizeof array / sizeof *array && b->core->charts.needs; i++)
+        *array[i] = cut(c, b->lanes, sizeof(double));
+    if (b->core->charts.needs)
+        e->primitive = cut(c, b->lanes, sizeof *e->primitive);
+}
+
+static int has_textures(const struct mcr_core *core)
+{
+    return core->textured || core->charts.needs & MCR_NEEDS_NORMALS;
+}
+
+static void cut_textures(struct cutter *c, struct mcr_batch *b)
+{
+    struct mcr_texture_lanes *t = &b->textures;
+    double **array[] = {&t->u, &t->v, &t->width, &t->r, &t->g, &t->b};
+    for (size_t i = 0; i < sizeof array / sizeof *array; i++)
+        *array[i] = cut(c, b->lanes, sizeof(double));
+    t->head = cut(c, b->core->scene->material_count, sizeof *t->head);
+    t->next = cut(c, b->lanes, sizeof *t->next);
+    t->lane = cut(c, b->lanes, sizeof *t->lane);
+    t->present = cut(c, b->lanes, sizeof *t->present);
+    double **normals[] = {&t->su, &t->sv, &t->step, &t->slope[0], &t->slope[1]};
+    for (size_t i = 0; i < sizeof normals / sizeof *normals && b->core->charts.needs & MCR_NEEDS_NORMALS; i++)
+        *normals[i] = cut(c, b->lanes, sizeof(double));
+    if (b->core->charts.needs & MCR_NEEDS_NORMALS)
+        t->front = cut(c, b->lanes, sizeof *t->front);
 }
 
 /* Arrays for mirror-like lobes. */
@@ -113,11 +159,13 @@ static void cut_all(struct cutter *c, struct mcr_batch *b)
     cut_paths(c, &b->sorted, b->lanes, core);
     for (size_t i = 0; i < sizeof of_points / sizeof *of_points; i++)
         *of_points[i] = cut(c, b->lanes, sizeof(double));
-    if (!core->surfaces.smooth) {
+    if (!core->surfaces.smooth && !(core->charts.needs & MCR_NEEDS_NORMALS)) {
         at->nx = at->gx;
         at->ny = at->gy;
         at->nz = at->gz;
     }
+    if (core->charts.needs)
+        cut_coordinates(c, b);
     at->material = cut(c, b->lanes, sizeof *at->material);
     at->primitive = cut(c, b->lanes, sizeof *at->primitive);
     b->order = cut(c, b->lanes, sizeof *b->order);
@@ -149,6 +197,10 @@ static void cut_all(struct cutter *c, struct mcr_batch *b)
     b->camera_y = cut(c, rays, sizeof(double));
     if (core->combines)
         cut_light(c, &b->light, b->lanes);
+    if ((core->combines || core->crosses) && core->varying_elsewhere)
+        cut_elsewhere(c, b);
+    if (has_textures(core))
+        cut_textures(c, b);
     if (core->crosses)
         cut_crossing(c, b);
     if (core->interiors) {
@@ -176,6 +228,8 @@ int mcr_batch_init(struct mcr_batch *batch, struct mcr_core *core)
     memset(batch->memory, 0, c.used);
     c = (struct cutter){batch->memory, 0};
     cut_all(&c, batch);
+    for (uint32_t m = 0; has_textures(core) && m < core->scene->material_count; m++)
+        batch->textures.head[m] = UINT32_MAX;
     batch->context.core = batch;
     batch->context.has_lights = core->scene->has_lights != 0;
     return 0;

@@ -45,6 +45,7 @@ struct mcr_paths {
     uint32_t *x, *y;        /* the pixel; NULL unless core->needs_pixel */
     uint32_t *bounce;       /* scattering events so far */
     uint32_t *slot;         /* where its radiance goes, in the ring of slots */
+    double *width, *spread; /* its pixel's footprint: diameter, and how that grows with the way; NULL without surface coordinates */
     uint32_t *inside[MCR_INTERIORS]; /* material + 1, in the order of entering, then 0; NULL where no material has an interior */
 };
 
@@ -61,6 +62,46 @@ struct mcr_surfaces {
     int smooth;             /* triangles have normals of their own */
 };
 
+/*
+ * Surface coordinates, by primitive of a shape; where nothing needs them (needs is 0) there are no tables. On flat shapes
+ * u = gu.(p - c) + u0, with the c of struct mcr_surfaces; triangles are computed from their corners.
+ */
+struct mcr_charts {
+    uint32_t needs;         /* MCR_NEEDS_* of the materials of primitives */
+    uint32_t count;         /* primitives of shapes */
+    double *gu[3], *gv[3];  /* gradients, 1 / render length; 0 for round shapes */
+    double *u0, *v0;
+    double (*local)[9];     /* spheres and ellipsoids: rows of the map onto the unit sphere; NULL without them */
+};
+
+/* Points whose surface coordinates are asked for. */
+struct mcr_chart_lanes {
+    uint32_t n;
+    const int64_t *primitive;
+    const double *px, *py, *pz, *gx, *gy, *gz, *ox, *oy, *oz; /* as in struct mcr_points */
+    double *u, *v;
+    double *width;          /* of the footprint: comes as a diameter in render space, goes as one in units of u and v */
+    double *gu[3], *gv[3];  /* gradients of u and v along the surface */
+};
+
+/* A parameter that is a texture, of one material. */
+struct mcr_textured {
+    uint32_t channel;               /* of the group's */
+    int colour;                     /* three channels, else a number in one */
+    const struct mcr_texture *texture;
+};
+
+/*
+ * A material of a group's tree and where its inputs are: the group's own material first, then those inside it. The channels of a node are those of its
+ * parameters, followed by what the host adds to its emission: red, green, blue, and the sides (MCR_MATERIAL_EMITS_*) as a number.
+ */
+struct mcr_layer {
+    const struct mcr_node *node;    /* the first material's */
+    uint32_t channel;               /* the first of 3 * parameters */
+    uint32_t emission;              /* the first of 4, or UINT32_MAX: the host adds nothing */
+};
+#define MCR_EMISSION_CHANNELS 4u
+
 /* What one call of a material plugin is for: a stateless plugin with all its materials, or one material. */
 struct mcr_group {
     const struct mcr_material_plugin *plugin;
@@ -70,10 +111,13 @@ struct mcr_group {
     uint32_t first;                 /* one of them */
     int scatters, emits;
     int spreads, lobes;             /* what scatters: directions with a density, mirror-like lobes */
-    uint32_t channels;              /* 3 * parameters */
+    uint32_t layer_count;
+    struct mcr_layer *layer;
+    uint32_t channels;              /* of all layers */
     double *constant;               /* channels * MCR_LANE_PAD: each value MCR_LANE_PAD times; of the first material */
-    double **table;                 /* channels arrays of scene->material_count values, for groups of several materials */
-    uint8_t *varies;                /* channels: whether the group's materials differ in it */
+    double **table;                 /* channels arrays of scene->material_count values, where the group has several materials; else NULL */
+    uint8_t *varies;                /* channels: whether the group's materials differ in it, or one has a texture there */
+    int textured;                   /* one has */
 };
 
 /* What crossing.c has to know of a material. */
@@ -97,9 +141,13 @@ struct mcr_core {
     double sky_share;               /* the probability with which it is chosen */
     const struct mcr_point_lights *point_lights; /* NULL: there are none */
     struct mcr_surfaces surfaces;
+    struct mcr_charts charts;
     uint32_t group_count;
     struct mcr_group *group;
     uint32_t *group_of_material;
+    uint32_t *textured_from;        /* by material: textured[textured_from[m]] .. textured[textured_from[m + 1] - 1]; NULL: nothing is textured */
+    struct mcr_textured *textured;
+    int varying_elsewhere;          /* the inputs of some that emit or pass are not the same everywhere */
     int interiors, crosses;         /* some material has an interior; or that, or lets light pass */
     struct mcr_interior *interior;  /* by material, where something crosses */
     uint32_t camera_inside[MCR_INTERIORS];
@@ -124,6 +172,10 @@ struct mcr_surface_points {
     double *reach;                  /* magnitude for the offset of rays that leave: max(|p|, |o|, reach of the shape) */
     uint32_t *material;
     int64_t *primitive;
+    /* NULL where nothing needs them: struct mcr_charts */
+    double *u, *v, *width;          /* coordinates, and the footprint's diameter in them */
+    double *gu[3], *gv[3];
+    double *tx, *ty, *tz;           /* tangents */
     double *here, *beyond;          /* indices of refraction; NULL where no material has an interior */
 };
 
@@ -172,6 +224,7 @@ struct mcr_crossing {
     double o[3], d[3], t, far, travelled; /* the running stretch begins at o, `travelled` from where the ray began */
     double q[3], n[3], side;
     double factor[3], share[3];
+    double width, spread;          /* of the footprint, at where the ray began; unused without struct mcr_charts */
 };
 struct mcr_crossing_lanes {
     double *px, *py, *pz, *nx, *ny, *nz, *ox, *oy, *oz, *side, *r, *g, *b, *t;
@@ -195,6 +248,28 @@ struct mcr_light_lanes {
     /* points on emitters, compact, of one group */
     double *px, *py, *pz, *nx, *ny, *nz, *tx, *ty, *tz, *side, *lr, *lg, *lb;
     uint32_t *material, *of;
+};
+
+/*
+ * Inputs at points that are not those of the batch: on emitters that look-ups find, and where rays cross surfaces. Before it asks for them, whoever has
+ * such points (all of one group) fills in primitives and footprints; see mcr_elsewhere_inputs.
+ */
+struct mcr_elsewhere {
+    double *input;                  /* as lane_input; NULL where nothing varies at such points */
+    int64_t *primitive;             /* this and what follows: NULL without struct mcr_charts */
+    double *width;                  /* comes as a diameter in render space */
+    double *u, *v, *gu[3], *gv[3];
+};
+
+/* For looking up textures of stretches with several materials. */
+struct mcr_texture_lanes {
+    uint32_t *head;                 /* by material: its first lane, or UINT32_MAX */
+    uint32_t *next;                 /* by lane */
+    uint32_t *lane, *present;       /* lanes of one material; materials there are */
+    double *u, *v, *width, *r, *g, *b;
+    /* for shading normals: NULL where none are tilted */
+    double *su, *sv, *step, *slope[2];
+    double (*front)[3];
 };
 
 struct mcr_batch {
@@ -225,7 +300,10 @@ struct mcr_batch {
     struct mcr_crossing *crossing;  /* capacity */
     struct mcr_crossing_lanes crossing_lanes;
     struct mcr_point_lanes point;
-    double *lane_input;             /* channels * capacity: inputs that vary from lane to lane */
+    double *lane_input;             /* channels * lanes: inputs that vary from lane to lane, of all ranges */
+    struct mcr_elsewhere elsewhere;
+    struct mcr_texture_lanes textures; /* NULL without textures */
+    const struct mcr_group *asked;  /* the group whose plugin runs: `channel` and `stride` are its */
     const double **channel;         /* the pointers handed to plugins */
     uint32_t *stride;
     double *slot_r, *slot_g, *slot_b;
@@ -284,6 +362,12 @@ struct mcr_stages {
     void (*sort)(struct mcr_batch *batch);
     /* Points and path states in sorted order. */
     void (*surface)(struct mcr_batch *batch);
+    /* Surface coordinates of any points. */
+    void (*chart)(const struct mcr_core *core, const struct mcr_chart_lanes *lanes);
+    /* The footprints of new camera paths: states to .. to+n-1, whose rays begin at `ray`. */
+    void (*cones)(struct mcr_batch *batch, uint32_t to, uint32_t ray, uint32_t n);
+    /* Footprints, surface coordinates and tangents of all points, after `surface`; only where something needs them. */
+    void (*coordinates)(struct mcr_batch *batch);
     /* Adds radiance times throughput to the slots of points begin .. end-1. */
     void (*emit)(struct mcr_batch *batch, uint32_t begin, uint32_t end);
     /* Adds the background to the slots of the rays that hit nothing. */
@@ -304,8 +388,16 @@ extern const struct mcr_stages mcr_stages_isa0, mcr_stages_isa1, mcr_stages_isa2
 int mcr_batch_init(struct mcr_batch *batch, struct mcr_core *core);
 void mcr_batch_fini(struct mcr_batch *batch);
 
-/* groups.c: inputs of the points begin .. end-1 of a group, whose materials are material[begin .. end-1], for a plugin's operation. */
-struct mcr_inputs mcr_group_inputs(struct mcr_batch *batch, const struct mcr_group *group, const uint32_t *material, uint32_t begin, uint32_t end);
+/* normals.c: tilts shading normals by normal maps and bumps, after `coordinates`; only where a material has them. */
+void mcr_normals_tilt(struct mcr_batch *batch);
+/* inputs.c: evaluates the inputs that vary at all points, once a round. */
+void mcr_inputs_prepare(struct mcr_batch *batch);
+/* Inputs of the points from `begin` on of a group, for a plugin's operation; those of layers inside are in batch->channel then. */
+struct mcr_inputs mcr_group_inputs(struct mcr_batch *batch, const struct mcr_group *group, uint32_t begin);
+/* The same for points elsewhere, evaluated now: see struct mcr_elsewhere. */
+struct mcr_inputs mcr_elsewhere_inputs(struct mcr_batch *batch, const struct mcr_group *group, const struct mcr_points *at, const uint32_t *material);
+/* Inputs of a layer of the group that was asked for last. */
+struct mcr_inputs mcr_layer_inputs(const struct mcr_batch *batch, const struct mcr_layer *layer);
 struct mcr_points mcr_batch_points(const struct mcr_batch *batch, uint32_t begin, uint32_t end);
 
 #endif

@@ -208,6 +208,10 @@ static int32_t ask_passes(struct mcr_batch *batch, const uint32_t *list, uint32_
             l->side[n] = c->side;
             l->material[n] = c->material;
             l->primitive[n] = c->hit;
+            if (batch->elsewhere.primitive) {
+                batch->elsewhere.primitive[n] = c->hit;
+                batch->elsewhere.width[n] = c->width + c->spread * (c->travelled + c->t);
+            }
             l->of[n++] = list[i];
         }
         if (!n)
@@ -346,7 +350,8 @@ int32_t mcr_crossing_paths(struct mcr_batch *batch)
         struct mcr_crossing *c = &batch->crossing[n++];
         *c = (struct mcr_crossing){.ray = j, .o = {batch->rox[j], batch->roy[j], batch->roz[j]}, .d = {batch->rdx[j], batch->rdy[j], batch->rdz[j]},
                                    .t = batch->t[j], .hit = batch->hit[j], .far = INFINITY, .factor = {1, 1, 1}, .by_chance = 1,
-                                   .key = paths->path_key[lane], .bounce = paths->bounce[lane]};
+                                   .key = paths->path_key[lane], .bounce = paths->bounce[lane],
+                                   .width = paths->width ? paths->width[lane] : 0, .spread = paths->width ? paths->spread[lane] : 0};
         take_inside(core, paths, lane, c->inside);
     }
     int32_t status = n ? go_on(batch, n) : MCR_OK;
@@ -427,7 +432,9 @@ static int32_t follow(struct mcr_batch *batch, const struct mcr_look *look, int 
         struct mcr_crossing *c = &batch->crossing[n++];
         *c = (struct mcr_crossing){.ray = i, .o = {rays->ox[i], rays->oy[i], rays->oz[i]}, .d = {rays->dx[i], rays->dy[i], rays->dz[i]}, .t = t[i],
                                    .hit = hit[i], .far = look->far[i], .factor = {1, 1, 1}, .by_chance = by_chance,
-                                   .key = mcr_mix64(batch->sorted.path_key[k] ^ look->salt), .bounce = batch->sorted.bounce[k]};
+                                   .key = mcr_mix64(batch->sorted.path_key[k] ^ look->salt), .bounce = batch->sorted.bounce[k],
+                                   .width = batch->sorted.width ? batch->sorted.width[k] : 0,
+                                   .spread = batch->sorted.width ? batch->sorted.spread[k] : 0};
         memcpy(c->inside, inside, sizeof inside);
     }
     *count = n;

@@ -7,5 +7,7 @@
 
 int mcr_groups_init(struct mcr_core *core, struct mcr_arena *arena);
 int mcr_surfaces_init(struct mcr_core *core, struct mcr_arena *arena);
+/* charts.c: after the surfaces. */
+int mcr_charts_init(struct mcr_core *core, struct mcr_arena *arena);
 
 #endif

@@ -204,7 +204,7 @@ static int32_t material_draw(const struct mcr_host *host, struct mcr_context *co
     const struct mcr_group *group = running_group(batch, at);
     if (!group || !group->plugin->draw)
         return MCR_E_UNSUPPORTED;
-    struct mcr_inputs inputs = mcr_group_inputs(batch, group, batch->at.material, batch->running->begin, batch->running->end);
+    struct mcr_inputs inputs = mcr_group_inputs(batch, group, batch->running->begin);
     struct frame was = enter(batch, context->node, mcr_material_bytes(group, at->n));
     int32_t status = group->plugin->draw(host, context, group->instance, &inputs, at, number, out, density);
     return leave(batch, &was, status);
@@ -217,10 +217,96 @@ static int32_t material_density(const struct mcr_host *host, struct mcr_context 
     const struct mcr_group *group = running_group(batch, at);
     if (!group || !group->plugin->density)
         return MCR_E_UNSUPPORTED;
-    struct mcr_inputs inputs = mcr_group_inputs(batch, group, batch->at.material, batch->running->begin, batch->running->end);
+    struct mcr_inputs inputs = mcr_group_inputs(batch, group, batch->running->begin);
     struct frame was = enter(batch, context->node, mcr_material_bytes(group, at->n));
     int32_t status = group->plugin->density(host, context, group->instance, &inputs, at, toward, density);
     return leave(batch, &was, status);
+}
+
+/* ---- Materials inside materials ---- */
+
+/* The layer of the running group that holds a child: its inputs are there. One that is there twice has the same in both. */
+static const struct mcr_layer *layer_of(const struct mcr_batch *batch, const struct mcr_child *child)
+{
+    const struct mcr_group *group = batch->asked;
+    for (uint32_t l = 1; group && l < group->layer_count; l++)
+        if (group->layer[l].node == node_of(child))
+            return &group->layer[l];
+    return NULL;
+}
+
+static const struct mcr_material_plugin *material_plugin(const struct mcr_node *node)
+{
+    return (const struct mcr_material_plugin *)(const void *)node->descriptor;
+}
+
+static uint64_t layer_bytes(const struct mcr_node *node, uint32_t n)
+{
+    const struct mcr_material_plugin *plugin = material_plugin(node);
+    return plugin->scratch_bytes ? plugin->scratch_bytes(node->instance, n) : 0;
+}
+
+/* Calls operation OPERATION of a child with the arguments behind `inputs`. */
+#define WITH_CHILD(OPERATION, ...)                                                                                  struct mcr_batch *batch = batch_of(context);                                                                    const struct mcr_layer *layer = layer_of(batch, child);                                                         if (!layer)                                                                                                         return MCR_E_INVALID;                                                                                       if (!material_plugin(layer->node)->OPERATION)                                                                       return MCR_E_UNSUPPORTED;                                                                                   struct mcr_inputs inputs = mcr_layer_inputs(batch, layer);                                                      struct frame was = enter(batch, layer->node, layer_bytes(layer->node, at->n));                                  return leave(batch, &was, material_plugin(layer->node)->OPERATION(host, context, layer->node->instance, &inputs, at, __VA_ARGS__))
+
+static int32_t material_child_traits(const struct mcr_host *host, struct mcr_context *context, const struct mcr_child *child,
+                                     struct mcr_material_traits *traits)
+{
+    return mcr_creation_host()->material_child_traits(host, context, child, traits);
+}
+
+static int32_t material_child_evaluate(const struct mcr_host *host, struct mcr_context *context, const struct mcr_child *child,
+                                       const struct mcr_points *at, const struct mcr_directions *toward, const struct mcr_colours *out)
+{
+    WITH_CHILD(evaluate, toward, out);
+}
+
+static int32_t material_child_draw(const struct mcr_host *host, struct mcr_context *context, const struct mcr_child *child,
+                                   const struct mcr_points *at, const double *const *number, const struct mcr_directions *out, double *density)
+{
+    WITH_CHILD(draw, number, out, density);
+}
+
+static int32_t material_child_density(const struct mcr_host *host, struct mcr_context *context, const struct mcr_child *child,
+                                      const struct mcr_points *at, const struct mcr_directions *toward, double *density)
+{
+    WITH_CHILD(density, toward, density);
+}
+
+static int32_t material_child_delta(const struct mcr_host *host, struct mcr_context *context, const struct mcr_child *child,
+                                    const struct mcr_points *at, const double *const *number, const struct mcr_directions *out,
+                                    double *probability, const struct mcr_colours *weight)
+{
+    WITH_CHILD(delta, number, out, probability, weight);
+}
+
+static int32_t material_child_passes(const struct mcr_host *host, struct mcr_context *context, const struct mcr_child *child,
+                                     const struct mcr_points *at, const struct mcr_colours *out)
+{
+    WITH_CHILD(passes, out);
+}
+
+static int32_t material_child_albedo(const struct mcr_host *host, struct mcr_context *context, const struct mcr_child *child,
+                                     const struct mcr_points *at, const struct mcr_colours *out)
+{
+    WITH_CHILD(albedo, out);
+}
+
+static int32_t layer_emission(struct mcr_batch *batch, const struct mcr_layer *layer, const struct mcr_points *at, const struct mcr_inputs *inputs,
+                              const struct mcr_colours *out);
+
+static int32_t material_child_emission(const struct mcr_host *host, struct mcr_context *context, const struct mcr_child *child,
+                                       const struct mcr_points *at, const struct mcr_colours *out)
+{
+    struct mcr_batch *batch = batch_of(context);
+    const struct mcr_layer *layer = layer_of(batch, child);
+    (void)host;
+    if (!layer)
+        return MCR_E_INVALID;
+    if (!material_plugin(layer->node)->emission && layer->emission == UINT32_MAX)
+        return MCR_E_UNSUPPORTED;
+    struct mcr_inputs inputs = mcr_layer_inputs(batch, layer);
+    return layer_emission(batch, layer, at, &inputs, out);
 }
 
 static uint32_t has_lights(const struct mcr_host *host, struct mcr_context *context)
@@ -238,7 +324,7 @@ int32_t mcr_group_evaluate(struct mcr_batch *batch, const struct mcr_range *rang
 {
     const struct mcr_group *group = &batch->core->group[range->group];
     struct mcr_points at = mcr_batch_points(batch, range->begin, range->end);
-    struct mcr_inputs inputs = mcr_group_inputs(batch, group, batch->at.material, range->begin, range->end);
+    struct mcr_inputs inputs = mcr_group_inputs(batch, group, range->begin);
     struct frame was = enter(batch, group->node, mcr_material_bytes(group, at.n));
     int32_t status = group->plugin->evaluate(&batch->core->host, &batch->context, group->instance, &inputs, &at, toward, out);
     return leave(batch, &was, status);
@@ -252,7 +338,7 @@ int32_t mcr_group_density(struct mcr_batch *batch, const struct mcr_range *range
         memset(density, 0, at.n * sizeof *density);
         return MCR_OK;
     }
-    struct mcr_inputs inputs = mcr_group_inputs(batch, group, batch->at.material, range->begin, range->end);
+    struct mcr_inputs inputs = mcr_group_inputs(batch, group, range->begin);
     struct frame was = enter(batch, group->node, mcr_material_bytes(group, at.n));
     int32_t status = group->plugin->density(&batch->core->host, &batch->context, group->instance, &inputs, &at, toward, density);
     return leave(batch, &was, status);
@@ -263,7 +349,7 @@ int32_t mcr_group_draw(struct mcr_batch *batch, const struct mcr_range *range, c
 {
     const struct mcr_group *group = &batch->core->group[range->group];
     struct mcr_points at = mcr_batch_points(batch, range->begin, range->end);
-    struct mcr_inputs inputs = mcr_group_inputs(batch, group, batch->at.material, range->begin, range->end);
+    struct mcr_inputs inputs = mcr_group_inputs(batch, group, range->begin);
     struct frame was = enter(batch, group->node, mcr_material_bytes(group, at.n));
     int32_t status = group->plugin->draw(&batch->core->host, &batch->context, group->instance, &inputs, &at, number, out, density);
     return leave(batch, &was, status);
@@ -273,7 +359,7 @@ int32_t mcr_group_albedo(struct mcr_batch *batch, const struct mcr_range *range,
 {
     const struct mcr_group *group = &batch->core->group[range->group];
     struct mcr_points at = mcr_batch_points(batch, range->begin, range->end);
-    struct mcr_inputs inputs = mcr_group_inputs(batch, group, batch->at.material, range->begin, range->end);
+    struct mcr_inputs inputs = mcr_group_inputs(batch, group, range->begin);
     struct frame was = enter(batch, group->node, mcr_material_bytes(group, at.n));
     int32_t status = group->plugin->albedo(&batch->core->host, &batch->context, group->instance, &inputs, &at, out);
     return leave(batch, &was, status);
@@ -284,39 +370,63 @@ int32_t mcr_group_delta(struct mcr_batch *batch, const struct mcr_range *range, 
 {
     const struct mcr_group *group = &batch->core->group[range->group];
     struct mcr_points at = mcr_batch_points(batch, range->begin, range->end);
-    struct mcr_inputs inputs = mcr_group_inputs(batch, group, batch->at.material, range->begin, range->end);
+    struct mcr_inputs inputs = mcr_group_inputs(batch, group, range->begin);
     struct frame was = enter(batch, group->node, mcr_material_bytes(group, at.n));
     int32_t status = group->plugin->delta(&batch->core->host, &batch->context, group->instance, &inputs, &at, number, out, probability, weight);
     return leave(batch, &was, status);
 }
 
-static int32_t emission(struct mcr_batch *batch, const struct mcr_group *group, const struct mcr_points *at, const struct mcr_inputs *inputs,
-                        const struct mcr_colours *out)
+/* Adds what the host emits for a layer of the running group, on the sides that do. */
+static void add_emission(const struct mcr_batch *batch, const struct mcr_layer *layer, const struct mcr_points *at, const struct mcr_colours *out)
 {
-    struct frame was = enter(batch, group->node, mcr_material_bytes(group, at->n));
-    int32_t status = group->plugin->emission(&batch->core->host, &batch->context, group->instance, inputs, at, out);
-    return leave(batch, &was, status);
+    const double *const *channel = batch->channel + layer->emission, *sides = channel[3];
+    const uint32_t *stride = batch->stride + layer->emission;
+    double *const to[3] = {out->r, out->g, out->b};
+    for (int c = 0; c < 3; c++)
+        for (uint32_t i = 0; i < at->n; i++) {
+            uint32_t does = (uint32_t)sides[i * stride[3]], side = at->side[i] > 0 ? MCR_MATERIAL_EMITS_FRONT : MCR_MATERIAL_EMITS_BACK;
+            to[c][i] += does & side ? channel[c][i * stride[c]] : 0;
+        }
+}
+
+/* What the plugin of a layer emits, if it does, and what the host adds. */
+static int32_t layer_emission(struct mcr_batch *batch, const struct mcr_layer *layer, const struct mcr_points *at, const struct mcr_inputs *inputs,
+                              const struct mcr_colours *out)
+{
+    const struct mcr_material_plugin *plugin = material_plugin(layer->node);
+    int32_t status = MCR_OK;
+    if (plugin->emission) {
+        struct frame was = enter(batch, layer->node, layer_bytes(layer->node, at->n));
+        status = leave(batch, &was, plugin->emission(&batch->core->host, &batch->context, layer->node->instance, inputs, at, out));
+    } else {
+        memset(out->r, 0, at->n * sizeof *out->r);
+        memset(out->g, 0, at->n * sizeof *out->g);
+        memset(out->b, 0, at->n * sizeof *out->b);
+    }
+    if (!status && layer->emission != UINT32_MAX)
+        add_emission(batch, layer, at, out);
+    return status;
 }
 
 int32_t mcr_group_emission(struct mcr_batch *batch, const struct mcr_range *range, const struct mcr_colours *out)
 {
     const struct mcr_group *group = &batch->core->group[range->group];
     struct mcr_points at = mcr_batch_points(batch, range->begin, range->end);
-    struct mcr_inputs inputs = mcr_group_inputs(batch, group, batch->at.material, range->begin, range->end);
-    return emission(batch, group, &at, &inputs, out);
+    struct mcr_inputs inputs = mcr_group_inputs(batch, group, range->begin);
+    return layer_emission(batch, group->layer, &at, &inputs, out);
 }
 
 int32_t mcr_points_emission(struct mcr_batch *batch, const struct mcr_group *group, const struct mcr_points *at, const uint32_t *material,
                             const struct mcr_colours *out)
 {
-    struct mcr_inputs inputs = mcr_group_inputs(batch, group, material, 0, at->n);
-    return emission(batch, group, at, &inputs, out);
+    struct mcr_inputs inputs = mcr_elsewhere_inputs(batch, group, at, material);
+    return layer_emission(batch, group->layer, at, &inputs, out);
 }
 
 int32_t mcr_points_passes(struct mcr_batch *batch, const struct mcr_group *group, const struct mcr_points *at, const uint32_t *material,
                           const struct mcr_colours *out)
 {
-    struct mcr_inputs inputs = mcr_group_inputs(batch, group, material, 0, at->n);
+    struct mcr_inputs inputs = mcr_elsewhere_inputs(batch, group, at, material);
     struct frame was = enter(batch, group->node, mcr_material_bytes(group, at->n));
     int32_t status = group->plugin->passes(&batch->core->host, &batch->context, group->instance, &inputs, at, out);
     return leave(batch, &was, status);
@@ -373,12 +483,23 @@ static uint64_t tree_bytes(const struct mcr_node *node, uint32_t n)
     return padded(node_bytes(node, n)) + below;
 }
 
+/* The same below a material. */
+static uint64_t layers_bytes(const struct mcr_node *node, uint32_t n)
+{
+    uint64_t below = 0;
+    for (uint32_t c = 0; c < node->child_count; c++) {
+        uint64_t bytes = layers_bytes(node->child[c], n);
+        below = bytes > below ? bytes : below;
+    }
+    return padded(layer_bytes(node, n)) + below;
+}
+
 uint64_t mcr_host_scratch(const struct mcr_core *core)
 {
     const struct mcr_sampler *sampler = core->scene->sampler;
     uint64_t most = 0, sources = 0;
     for (uint32_t g = 0; g < core->group_count; g++) {
-        uint64_t bytes = padded(mcr_material_bytes(&core->group[g], core->capacity));
+        uint64_t bytes = layers_bytes(core->group[g].node, core->capacity);
         most = bytes > most ? bytes : most;
     }
     for (uint32_t s = 0; s <= sampler->source_count; s++) {
@@ -408,5 +529,13 @@ void mcr_host_init(struct mcr_core *core)
                                    .light_density_point = light_density_point,
                                    .material_draw = material_draw,
                                    .material_density = material_density,
-                                   .has_lights = has_lights};
+                                   .has_lights = has_lights,
+                                   .material_child_traits = material_child_traits,
+                                   .material_child_evaluate = material_child_evaluate,
+                                   .material_child_draw = material_child_draw,
+                                   .material_child_density = material_child_density,
+                                   .material_child_emission = material_child_emission,
+                                   .material_child_delta = material_child_delta,
+                                   .material_child_passes = material_child_passes,
+                                   .material_child_albedo = material_child_albedo};
 }

@@ -79,6 +79,10 @@ static void emitter_surface(struct mcr_batch *batch, uint32_t k, uint32_t c)
     l->side[c] = side;
     l->material[c] = batch->core->surfaces.material[l->primitive[k]];
     l->of[c] = k;
+    if (batch->elsewhere.primitive) {
+        batch->elsewhere.primitive[c] = l->primitive[k];
+        batch->elsewhere.width[c] = batch->sorted.width[k] + batch->sorted.spread[k] * l->distance[k];
+    }
 }
 
 /* Adds the weighted light that the lanes of one group see: throughput * f * Le * h(p) / (h(p) + others) / p. */

@@ -185,6 +185,8 @@ static int32_t camera(struct mcr_batch *batch, struct mcr_pass *pass)
                                          .distance = core->features && batch->features.distance ? batch->features.distance + begin.slot : NULL,
                                          .weight = weight};
         core->stages->camera(core->scene, &lanes);
+        if (core->charts.needs)
+            core->stages->cones(batch, to, batch->rays, n);
         if (core->interiors)
             mcr_crossing_begin(batch, to, n);
         batch->rays += n;
@@ -315,6 +317,11 @@ static int32_t step(struct mcr_batch *batch, struct mcr_pass *pass)
     if (core->background && batch->miss_count)
         core->stages->background(batch);
     TIMED(MCR_STAGE_SURFACE, core->stages->surface(batch));
+    if (core->charts.needs)
+        TIMED(MCR_STAGE_SURFACE, core->stages->coordinates(batch));
+    if (core->charts.needs & MCR_NEEDS_NORMALS)
+        TIMED(MCR_STAGE_SURFACE, mcr_normals_tilt(batch));
+    TIMED(MCR_STAGE_MATERIAL, mcr_inputs_prepare(batch));
     if (core->interiors)
         mcr_crossing_points(batch);
     if (batch->cap_r)

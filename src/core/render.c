@@ -87,7 +87,7 @@ static int prepare(struct render *render, const struct mcr_scene *scene, const s
     }
     core->combines = directions->technique_count > 1;
     core->emitters = mcr_emitters_create(render->arena, scene);
-    if (!core->emitters || mcr_groups_init(core, render->arena) || mcr_surfaces_init(core, render->arena) ||
+    if (!core->emitters || mcr_groups_init(core, render->arena) || mcr_surfaces_init(core, render->arena) || mcr_charts_init(core, render->arena) ||
         mcr_crossing_init(core, render->arena))
         return -1;
     mcr_crossing_camera(core);

@@ -9,6 +9,9 @@ void MCR_ISA_NAME(mcr_stage_camera)(const struct mcr_scene *scene, const struct 
 void MCR_ISA_NAME(mcr_stage_begin)(struct mcr_batch *batch, const struct mcr_begin *begin);
 void MCR_ISA_NAME(mcr_stage_sort)(struct mcr_batch *batch);
 void MCR_ISA_NAME(mcr_stage_surface)(struct mcr_batch *batch);
+void MCR_ISA_NAME(mcr_stage_chart)(const struct mcr_core *core, const struct mcr_chart_lanes *lanes);
+void MCR_ISA_NAME(mcr_stage_cones)(struct mcr_batch *batch, uint32_t to, uint32_t ray, uint32_t n);
+void MCR_ISA_NAME(mcr_stage_coordinates)(struct mcr_batch *batch);
 void MCR_ISA_NAME(mcr_stage_emit)(struct mcr_batch *batch, uint32_t begin, uint32_t end);
 void MCR_ISA_NAME(mcr_stage_background)(struct mcr_batch *batch);
 void MCR_ISA_NAME(mcr_stage_mirror)(struct mcr_batch *batch, const struct mcr_range *range);

@@ -77,6 +77,19 @@ void mcr_image_destroy(struct mcr_image *image)
     free(image);
 }
 
+void mcr_image_unknown(size_t count, char *error, size_t length)
+{
+    mcr_image_fail(error, length, "%s",
+                   count ? "its first bytes are those of no known image format (PPM, PFM, EXR, PNG, JPEG, TIFF, HDR)" : "it is empty");
+}
+
+int mcr_image_needs_module(const char *module, char *error, size_t length)
+{
+    char reason[300];
+    if (mcr_image_module(reason, sizeof reason)) return 0;
+    return mcr_image_fail(error, length, "its format (%s) needs OpenImageIO, which is not available: %s", module, reason);
+}
+
 struct mcr_image *mcr_image_decode(const unsigned char *bytes, size_t count, char *error, size_t length)
 {
     const char *module = NULL;
@@ -84,16 +97,9 @@ struct mcr_image *mcr_image_decode(const unsigned char *bytes, size_t count, cha
     case MCR_MAGIC_PNM: return mcr_pnm_read(bytes, count, error, length);
     case MCR_MAGIC_PFM: return mcr_pfm_read(bytes, count, error, length);
     case MCR_MAGIC_MODULE: break;
-    case MCR_MAGIC_UNKNOWN:
-        mcr_image_fail(error, length, "%s",
-                       count ? "its first bytes are those of no known image format (PPM, PFM, EXR, PNG, JPEG, TIFF, HDR)" : "it is empty");
-        return NULL;
+    case MCR_MAGIC_UNKNOWN: mcr_image_unknown(count, error, length); return NULL;
     }
-    if (mcr_image_module(error, length)) return mcr_module_read(module, bytes, count, error, length);
-    char reason[300];
-    mcr_image_module(reason, sizeof reason);
-    mcr_image_fail(error, length, "its format (%s) needs OpenImageIO, which is not available: %s", module, reason);
-    return NULL;
+    return mcr_image_needs_module(module, error, length) ? NULL : mcr_module_read(module, bytes, count, error, length);
 }
 
 /* All bytes of a file, at most MCR_IMAGE_MAX_BYTES; the caller frees them. NULL after a failure. */
@@ -129,18 +135,23 @@ static unsigned char *read_all(int fd, size_t *count, char *error, size_t length
     return NULL;
 }
 
+unsigned char *mcr_image_bytes(const char *path, size_t *count, char *error, size_t length)
+{
+    int fd = open(path, O_RDONLY | O_CLOEXEC | O_NOCTTY);
+    if (fd < 0) return mcr_image_fail(error, length, "%s", strerror(errno)), NULL;
+    unsigned char *bytes = read_all(fd, count, error, length);
+    close(fd);
+    return bytes;
+}
+
 struct mcr_image *mcr_image_read(const char *path, char *error, size_t length)
 {
     char reason[400] = "";
     size_t count = 0;
     struct mcr_image *image = NULL;
-    int fd = open(path, O_RDONLY | O_CLOEXEC | O_NOCTTY);
-    unsigned char *bytes = NULL;
-    if (fd < 0) mcr_image_fail(reason, sizeof reason, "%s", strerror(errno));
-    else bytes = read_all(fd, &count, reason, sizeof reason);
+    unsigned char *bytes = mcr_image_bytes(path, &count, reason, sizeof reason);
     if (bytes) image = mcr_image_decode(bytes, count, reason, sizeof reason);
     free(bytes);
-    if (fd >= 0) close(fd);
     if (!image) mcr_image_fail(error, length, "cannot read '%.200s': %s", path, reason);
     return image;
 }

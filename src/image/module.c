@@ -156,7 +156,7 @@ struct reading {
     struct mcr_oiio_header header;
 };
 
-static double *begin(void *context, const struct mcr_oiio_header *header)
+static void *begin(void *context, const struct mcr_oiio_header *header)
 {
     struct reading *reading = context;
     reading->header = *header;
@@ -203,7 +203,7 @@ struct mcr_image *mcr_module_read(const char *format, const unsigned char *bytes
     if (!table) return NULL;
     struct mcr_oiio_input input = {
         .size = sizeof input, .max_side = MCR_IMAGE_MAX_SIDE, .max_channels = MCR_IMAGE_MAX_CHANNELS,
-        .max_values = MCR_IMAGE_MAX_BYTES / sizeof(double), .format = format, .bytes = bytes, .count = count,
+        .max_bytes = MCR_IMAGE_MAX_BYTES, .format = format, .bytes = bytes, .count = count,
         .context = &reading, .begin = begin,
     };
     if (!table->read(&input, error, length)) {
@@ -211,5 +211,31 @@ struct mcr_image *mcr_module_read(const char *format, const unsigned char *bytes
         mcr_image_fail(error, length, "not enough memory");
     }
     mcr_image_destroy(reading.image);
+    return NULL;
+}
+
+static void *begin_pixels(void *context, const struct mcr_oiio_header *header)
+{
+    static const uint32_t peak[] = {[MCR_OIIO_U8] = 255, [MCR_OIIO_U16] = 65535, [MCR_OIIO_FLOAT] = 0};
+    struct mcr_pixels **pixels = context, *made = mcr_pixels_create(header->width, header->height, header->channels, peak[header->type]);
+    *pixels = made;
+    if (!made) return NULL;
+    made->transfer = header->transfer;
+    made->gamma = header->gamma;
+    mcr_pixels_name(made, header->channel, header->alpha);
+    return made->memory;
+}
+
+struct mcr_pixels *mcr_module_pixels(const char *format, const unsigned char *bytes, size_t count, int data, char *error, size_t length)
+{
+    const struct mcr_oiio *table = table_of(error, length);
+    struct mcr_pixels *pixels = NULL;
+    if (!table) return NULL;
+    struct mcr_oiio_input input = {
+        .size = sizeof input, .max_side = MCR_IMAGE_MAX_SIDE, .max_channels = MCR_IMAGE_MAX_CHANNELS, .raw = data ? MCR_OIIO_DATA : MCR_OIIO_RAW,
+        .max_bytes = MCR_IMAGE_MAX_BYTES, .format = format, .bytes = bytes, .count = count, .context = &pixels, .begin = begin_pixels,
+    };
+    if (!table->read(&input, error, length)) return pixels;
+    mcr_pixels_destroy(pixels);
     return NULL;
 }

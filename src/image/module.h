@@ -8,6 +8,7 @@
 
 #include "image/encode.h"
 #include "image/image.h"
+#include "image/pixels.h"
 #include "image/sink.h"
 
 /* Whether the module loads and knows OpenImageIO's format of this name. Returns 0, or -1 with the reason. */
@@ -19,5 +20,7 @@ int mcr_module_write(const struct mcr_format *format, struct mcr_encoder *encode
 
 /* Decodes a file in memory. NULL after a failure, the reason in `error`. */
 struct mcr_image *mcr_module_read(const char *format, const unsigned char *bytes, size_t count, char *error, size_t length);
+/* The same, to numbers as the file holds them. data: of any colour space. */
+struct mcr_pixels *mcr_module_pixels(const char *format, const unsigned char *bytes, size_t count, int data, char *error, size_t length);
 
 #endif

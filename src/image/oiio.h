@@ -12,7 +12,7 @@
 extern "C" {
 #endif
 
-#define MCR_OIIO_VERSION 2u
+#define MCR_OIIO_VERSION 3u
 
 /* Types of values in rows that are written. Integers are sRGB, floats linear Rec. 709. */
 #define MCR_OIIO_U8 0u
@@ -53,20 +53,24 @@ struct mcr_oiio_header {
     int32_t alpha, depth;       /* channels that are linear in any case, -1: none */
     const char *const *channel; /* names, valid during the call */
     uint32_t units;             /* of the attribute mcrender:units, 0 where it is absent */
-    uint32_t reserved;
+    uint32_t type;              /* MCR_OIIO_*: what the values are given as, where they are asked for as the file holds them */
 };
+
+/* Integers of 8 and 16 bits as they are, all others as floats; and the same whatever colours they may mean: nothing of them is judged. */
+#define MCR_OIIO_RAW 1u
+#define MCR_OIIO_DATA 2u
 
 struct mcr_oiio_input {
     uint32_t size;
     uint32_t max_side, max_channels;
-    uint32_t reserved;
-    uint64_t max_values;        /* width * height * channels */
+    uint32_t raw;               /* 0: all values as doubles; MCR_OIIO_RAW, MCR_OIIO_DATA */
+    uint64_t max_bytes;         /* of all values in that form */
     const char *format;
     const void *bytes;          /* the file */
     uint64_t count;
     void *context;
     /* Told what the file holds, within the limits; gives room for all values, or NULL: stop. */
-    double *(*begin)(void *context, const struct mcr_oiio_header *header);
+    void *(*begin)(void *context, const struct mcr_oiio_header *header);
 };
 
 /* All return 0, or -1 with the reason in error[0..length). */
@@ -76,7 +80,7 @@ struct mcr_oiio {
     /* Whether this OpenImageIO reads and writes a format. */
     int32_t (*check)(const char *format, char *error, uint64_t length);
     int32_t (*write)(const struct mcr_oiio_output *output, char *error, uint64_t length);
-    /* Values as they are stored, integers divided by 2^bits - 1. */
+    /* Values as they are stored, integers divided by 2^bits - 1 where they are given as floating point. */
     int32_t (*read)(const struct mcr_oiio_input *input, char *error, uint64_t length);
 };
 

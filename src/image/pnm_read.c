@@ -66,28 +66,24 @@ static int end_magic(struct cursor *cursor)
     return cursor->at < cursor->count && cursor->bytes[cursor->at] == '#' ? 0 : end_header(cursor);
 }
 
-/* An image, if its data can be there at all: `least` bytes for each value. NULL with the error told. */
-static struct mcr_image *begin(struct cursor *cursor, uint32_t width, uint32_t height, uint32_t channels, size_t least)
+/* Whether the data can be there at all, `least` bytes for each value, and fits, `most` bytes each, into memory. -1 with the error told. */
+static int fits(const struct cursor *cursor, uint32_t width, uint32_t height, uint32_t channels, size_t least, size_t most)
 {
     uint64_t values = (uint64_t)width * height * channels; /* below 2^34 */
-    if (values > MCR_IMAGE_MAX_BYTES / sizeof(double)) {
-        mcr_image_fail(cursor->error, cursor->length, "its size %u x %u is too large: over 1 GiB of pixels", width, height);
-        return NULL;
-    }
-    if (cursor->count - cursor->at < values * least) {
-        mcr_image_fail(cursor->error, cursor->length, "it is cut off: %llu bytes of pixels at least, %zu there",
-                       (unsigned long long)(values * least), cursor->count - cursor->at);
-        return NULL;
-    }
-    struct mcr_image *image = mcr_image_create_named(width, height, channels, channels == 1 ? grey : colour);
-    if (!image) mcr_image_fail(cursor->error, cursor->length, "not enough memory");
-    return image;
+    if (values > MCR_IMAGE_MAX_BYTES / most)
+        return mcr_image_fail(cursor->error, cursor->length, "its size %u x %u is too large: over 1 GiB of pixels", width, height);
+    if (cursor->count - cursor->at < values * least)
+        return mcr_image_fail(cursor->error, cursor->length, "it is cut off: %llu bytes of pixels at least, %zu there",
+                              (unsigned long long)(values * least), cursor->count - cursor->at);
+    return 0;
 }
 
-/* linear: the table of all values, or NULL for small images of many values. */
-static int read_samples(struct cursor *cursor, struct mcr_image *image, int plain, uint32_t peak, const double *linear)
+static int read_samples(struct cursor *cursor, struct mcr_pixels *pixels, int plain)
 {
-    size_t values = (size_t)image->width * image->height * image->channels;
+    size_t values = (size_t)pixels->width * pixels->height * pixels->channels;
+    uint32_t peak = pixels->peak;
+    uint8_t *code = pixels->memory;
+    uint16_t *wide = pixels->memory;
     for (size_t i = 0; i < values; i++) {
         uint32_t value = 0;
         if (plain) {
@@ -100,12 +96,14 @@ static int read_samples(struct cursor *cursor, struct mcr_image *image, int plai
         }
         if (value > peak)
             return mcr_image_fail(cursor->error, cursor->length, "before byte %zu: value %u is over its maximum %u", cursor->at, value, peak);
-        image->data[i] = linear ? linear[value] : mcr_srgb_decode((double)value / peak);
+        if (peak < 256) code[i] = (uint8_t)value;
+        else wide[i] = (uint16_t)value;
     }
     return 0;
 }
 
-struct mcr_image *mcr_pnm_read(const unsigned char *bytes, size_t count, char *error, size_t length)
+/* `most`: bytes that a value will take in the end; 0: as few as its codes need. */
+static struct mcr_pixels *read_pnm(const unsigned char *bytes, size_t count, size_t most, char *error, size_t length)
 {
     struct cursor cursor = {bytes, count, 2, error, length};
     uint32_t width, height, peak, channels = bytes[1] == '3' || bytes[1] == '6' ? 3 : 1;
@@ -117,15 +115,41 @@ struct mcr_image *mcr_pnm_read(const unsigned char *bytes, size_t count, char *e
     if (end_magic(&cursor) || read_number(&cursor, "width", 1, MCR_IMAGE_MAX_SIDE, &width) ||
         read_number(&cursor, "height", 1, MCR_IMAGE_MAX_SIDE, &height) || read_number(&cursor, "maximum", 1, 65535, &peak) || end_header(&cursor))
         return NULL;
-    struct mcr_image *image = begin(&cursor, width, height, channels, plain || peak < 256 ? 1 : 2);
-    if (!image) return NULL;
-    double *linear = (uint64_t)width * height * channels > peak ? malloc((size_t)(peak + 1) * sizeof *linear) : NULL;
-    for (uint32_t k = 0; linear && k <= peak; k++) linear[k] = mcr_srgb_decode((double)k / peak);
-    int status = read_samples(&cursor, image, plain, peak, linear);
-    free(linear);
-    if (!status) return image;
-    mcr_image_destroy(image);
+    if (fits(&cursor, width, height, channels, plain || peak < 256 ? 1 : 2, most ? most : peak < 256 ? 1 : 2)) return NULL;
+    struct mcr_pixels *pixels = mcr_pixels_create(width, height, channels, peak);
+    if (!pixels) {
+        mcr_image_fail(error, length, "not enough memory");
+        return NULL;
+    }
+    pixels->transfer = MCR_TRANSFER_SRGB;
+    mcr_pixels_name(pixels, channels == 1 ? grey : colour, -1);
+    if (!read_samples(&cursor, pixels, plain)) return pixels;
+    mcr_pixels_destroy(pixels);
     return NULL;
+}
+
+struct mcr_pixels *mcr_pnm_pixels(const unsigned char *bytes, size_t count, char *error, size_t length)
+{
+    return read_pnm(bytes, count, 0, error, length);
+}
+
+struct mcr_image *mcr_pnm_read(const unsigned char *bytes, size_t count, char *error, size_t length)
+{
+    struct mcr_pixels *pixels = read_pnm(bytes, count, sizeof(double), error, length);
+    if (!pixels) return NULL;
+    uint32_t peak = pixels->peak, channels = pixels->channels;
+    size_t values = (size_t)pixels->width * pixels->height * channels;
+    struct mcr_image *image = mcr_image_create_named(pixels->width, pixels->height, channels, channels == 1 ? grey : colour);
+    double *linear = values > peak ? malloc((size_t)(peak + 1) * sizeof *linear) : NULL; /* not for few of many values */
+    for (uint32_t k = 0; linear && k <= peak; k++) linear[k] = mcr_srgb_decode((double)k / peak);
+    for (size_t i = 0; image && i < values; i++) {
+        uint32_t value = peak < 256 ? pixels->code[i] : pixels->wide[i];
+        image->data[i] = linear ? linear[value] : mcr_srgb_decode((double)value / peak);
+    }
+    free(linear);
+    mcr_pixels_destroy(pixels);
+    if (!image) mcr_image_fail(error, length, "not enough memory");
+    return image;
 }
 
 /* The scale: a decimal number, finite and not 0. */
@@ -151,8 +175,12 @@ struct mcr_image *mcr_pfm_read(const unsigned char *bytes, size_t count, char *e
     if (end_magic(&cursor) || read_number(&cursor, "width", 1, MCR_IMAGE_MAX_SIDE, &width) ||
         read_number(&cursor, "height", 1, MCR_IMAGE_MAX_SIDE, &height) || read_scale(&cursor, &scale) || end_header(&cursor))
         return NULL;
-    struct mcr_image *image = begin(&cursor, width, height, channels, 4);
-    if (!image) return NULL;
+    if (fits(&cursor, width, height, channels, 4, sizeof(double))) return NULL;
+    struct mcr_image *image = mcr_image_create_named(width, height, channels, channels == 1 ? grey : colour);
+    if (!image) {
+        mcr_image_fail(error, length, "not enough memory");
+        return NULL;
+    }
     size_t row = (size_t)width * channels;
     double factor = fabs(scale);
     for (uint32_t y = height; y-- > 0;) {

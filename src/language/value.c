@@ -148,6 +148,8 @@ static struct mcr_value named(struct mcr_parser *parser, const struct mcr_token 
         value = (struct mcr_value){ .kind = MCR_VALUE_NUMBER, .place = place, .number = pi, .text = "" };
         return value;
     }
+    if (mcr_is_function(word) && parser->words && mcr_token_is(word, "srgb"))
+        return value; /* `colour srgb` of a texture: what it means is judged by the block */
     if (mcr_is_function(word)) {
         mcr_report(parser->diagnostics, MCR_ERROR, place, "'%s' is a function, expected '(' after it", value.text);
         return mcr_error_value(place);

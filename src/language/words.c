@@ -15,6 +15,7 @@ static const struct mcr_block_form forms[] = {
     { "reference", MCR_INSIDE_STUDY, MCR_INSIDE_SETTINGS, 0, 0, 0, 1 },
     { "material",  ANYWHERE, MCR_INSIDE_SETTINGS, 1,   1,   0,    0 },
     { "light",     ANYWHERE, MCR_INSIDE_SHAPE,    1,   1,   0,    0 },
+    { "texture",   ANYWHERE, MCR_INSIDE_SETTINGS, 1,   1,   0,    1 },
     { "group",     ANYWHERE, MCR_INSIDE_GROUP,    0,   0,   0,    0 },
     { "transform", PLACED,   MCR_INSIDE_SETTINGS, 0,   0,   0,    0 },
     { "plane",     ANYWHERE, MCR_INSIDE_SHAPE,    0,   0,   0,    0 },

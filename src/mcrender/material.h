@@ -81,7 +81,8 @@ struct mcr_material_plugin {
      * Delta lobes: with number[0] chooses one of them, or none. Stores for a lobe its direction, the probability with which it is
      * chosen, and as `weight` the radiance that it passes on, relative to the radiance that arrives along the direction; the weight is
      * not divided by the probability: the core does that. Where no lobe was chosen, stores direction (0, 0, 0), the probability of
-     * that, and weight 0; the path then goes on by `evaluate` and a technique's density. Takes MCR_DELTA_DIMENSIONS numbers, and the core
+     * that, and weight 0; the path then goes on by `evaluate` and a technique's density. None is chosen last: by the numbers from 1 less its
+     * probability on, so that whoever asks with a number close to 1 learns how probable it is. Takes MCR_DELTA_DIMENSIONS numbers, and the core
      * calls it under every sampler. NULL if there is none.
      */
     int32_t (*delta)(const struct mcr_host *host, struct mcr_context *context, const void *instance, const struct mcr_inputs *inputs,

@@ -57,7 +57,7 @@ extern "C" {
 #define MCR_TYPE_INTEGER 2u /* slot 0, a whole number of magnitude at most 2^53 */
 #define MCR_TYPE_COLOUR 3u  /* slots 0-2: red, green, blue, linear Rec. 709 */
 #define MCR_TYPE_CHOICE 4u  /* slot 0: the index of the word in `choices` */
-#define MCR_TYPE_MATERIAL 5u /* of materials only; slot 0: which of the children of struct mcr_creation it is; the scene gives a material's name */
+#define MCR_TYPE_MATERIAL 5u /* of materials only; slot 0: which of the children of struct mcr_creation it is, -1: not given; the scene gives a material's name */
 
 /* Flags of parameters. */
 #define MCR_PARAMETER_REQUIRED 1u  /* the scene must set it; `fallback` is unused */

@@ -70,7 +70,7 @@ void settle(const mcr_oiio_input *input)
     OIIO::attribute("threads", 1);
     OIIO::attribute("exr_threads", -1);
     if (!input) return;
-    OIIO::attribute("limits:imagesize_MB", static_cast<int>(std::min<uint64_t>(input->max_values * sizeof(double) >> 20, 32768)));
+    OIIO::attribute("limits:imagesize_MB", static_cast<int>(std::min<uint64_t>(input->max_bytes >> 20, 32768)));
     OIIO::attribute("limits:channels", static_cast<int>(input->max_channels));
 }
 
@@ -182,6 +182,16 @@ bool primaries_differ(const OIIO::ImageSpec &spec)
     return false;
 }
 
+/* What values are handed over as, and its MCR_OIIO_* (raw alone). */
+OIIO::TypeDesc value_type(const OIIO::ImageSpec &spec, const mcr_oiio_input *input, uint32_t &type)
+{
+    type = MCR_OIIO_FLOAT;
+    if (!input->raw) return OIIO::TypeDesc::DOUBLE;
+    if (spec.format == OIIO::TypeDesc::UINT8) return type = MCR_OIIO_U8, OIIO::TypeDesc::UINT8;
+    if (spec.format == OIIO::TypeDesc::UINT16) return type = MCR_OIIO_U16, OIIO::TypeDesc::UINT16;
+    return OIIO::TypeDesc::FLOAT;
+}
+
 /* The reason why a file is not read, "" if it is. */
 std::string refusal(const OIIO::ImageSpec &spec, const mcr_oiio_input *input)
 {
@@ -192,14 +202,16 @@ std::string refusal(const OIIO::ImageSpec &spec, const mcr_oiio_input *input)
     if (spec.nchannels < 1 || spec.nchannels > static_cast<int64_t>(input->max_channels))
         return "its " + std::to_string(spec.nchannels) + " channels are not within 1 to " + std::to_string(input->max_channels);
     const uint64_t values = uint64_t(spec.width) * uint64_t(spec.height) * uint64_t(spec.nchannels);
+    uint32_t type;
+    const uint64_t max_values = input->max_bytes / value_type(spec, input, type).size();
     const std::string size = std::to_string(spec.width) + " x " + std::to_string(spec.height);
-    if (values > input->max_values) return "its size " + size + " is too large: over 1 GiB of pixels";
+    if (values > max_values) return "its size " + size + " is too large: over 1 GiB of pixels";
     /* Deflate holds at most 1032 bytes in one, a byte at most 8 values: what promises twice that is cut off or a lie. */
     if (values / (2 * 8 * 1032) > input->count) return "its " + std::to_string(input->count) + " bytes cannot hold " + size + " pixels";
     if (spec.tile_width > side || spec.tile_height > side || spec.tile_width < 0 || spec.tile_height < 0 ||
-        uint64_t(spec.tile_width) * uint64_t(spec.tile_height) * uint64_t(spec.nchannels) > input->max_values)
+        uint64_t(spec.tile_width) * uint64_t(spec.tile_height) * uint64_t(spec.nchannels) > max_values)
         return "its tiles are too large";
-    if (primaries_differ(spec)) return "its primaries (chromaticities) are not those of Rec. 709";
+    if (input->raw != MCR_OIIO_DATA && primaries_differ(spec)) return "its primaries (chromaticities) are not those of Rec. 709";
     return std::string();
 }
 
@@ -225,14 +237,17 @@ int32_t read(const mcr_oiio_input *input, char *error, uint64_t length)
         header.alpha = spec.alpha_channel;
         header.depth = spec.z_channel;
         std::string space;
-        if (!transfer(spec, header, space)) return fail(error, length, "its colour space '" + space + "' is not known");
+        if (!transfer(spec, header, space) && input->raw != MCR_OIIO_DATA) return fail(error, length, "its colour space '" + space + "' is not known");
         std::vector<const char *> names;
         for (int c = 0; c < spec.nchannels; c++) names.push_back(spec.channelnames[size_t(c)].c_str());
         header.channel = names.data();
         header.units = units(spec);
-        double *values = input->begin(input->context, &header);
+        const OIIO::TypeDesc type = value_type(spec, input, header.type);
+        void *values = input->begin(input->context, &header);
         if (!values) return fail(error, length, "not enough memory");
-        if (!reader->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::DOUBLE, values)) return fail(error, length, reader->geterror());
+        if (!reader->read_image(0, 0, 0, spec.nchannels, type, values)) return fail(error, length, reader->geterror());
+        /* Of files that are cut off some readers hand over what there is, and say so only here. */
+        if (reader->has_error()) return fail(error, length, reader->geterror());
         return 0;
     });
 }

@@ -13,7 +13,8 @@ static const char *const kind_name[] = {[MCR_KIND_DIRECTIONS] = "sampler, draws 
                                         [MCR_KIND_NUMBERS] = "sampler, supplies numbers and stands outside of those that draw directions",
                                         [MCR_KIND_MATERIAL] = "material"};
 static const char *const type_title[] = {
-    [MCR_TYPE_NUMBER] = "number", [MCR_TYPE_INTEGER] = "whole number", [MCR_TYPE_COLOUR] = "colour", [MCR_TYPE_CHOICE] = "word"};
+    [MCR_TYPE_NUMBER] = "number", [MCR_TYPE_INTEGER] = "whole number", [MCR_TYPE_COLOUR] = "colour", [MCR_TYPE_CHOICE] = "word",
+    [MCR_TYPE_MATERIAL] = "material"};
 
 static void print_sets(FILE *to, uint32_t isa_mask)
 {
@@ -65,12 +66,16 @@ static void print_parameter(FILE *to, const struct mcr_parameter *parameter)
             mcr_choice_word(parameter->choices, k, word);
             fprintf(to, "%s%s", k == 0 ? ", " : k + 1 == count ? " or " : ", ", word);
         }
+    } else if (parameter->type == MCR_TYPE_MATERIAL) {
+        fprintf(to, ", by its name");
     } else {
         mcr_range_text(parameter, text, sizeof text);
         fprintf(to, ", %s", text);
     }
     if (parameter->flags & MCR_PARAMETER_REQUIRED) {
         fprintf(to, "; required");
+    } else if (parameter->type == MCR_TYPE_MATERIAL) {
+        fprintf(to, "; none by default");
     } else {
         mcr_value_text(parameter, parameter->fallback, text, sizeof text);
         fprintf(to, "; default %s", text);

@@ -106,6 +106,57 @@ static int32_t no_material_density(const struct mcr_host *host, struct mcr_conte
     return MCR_E_UNSUPPORTED;
 }
 
+static int32_t material_child_traits(const struct mcr_host *host, struct mcr_context *context, const struct mcr_child *child,
+                                     struct mcr_material_traits *traits)
+{
+    const struct mcr_node *node = (const struct mcr_node *)child;
+    size_t size = traits->size < sizeof *traits ? traits->size : sizeof *traits;
+
+    (void)host, (void)context;
+    if (!child || node->descriptor->kind != MCR_KIND_MATERIAL || !node->traits)
+        return MCR_E_INVALID;
+    if (size > sizeof traits->size) /* as much as the caller knows of, but for its own `size` */
+        memcpy((char *)traits + sizeof traits->size, (const char *)node->traits + sizeof traits->size, size - sizeof traits->size);
+    return MCR_OK;
+}
+
+static int32_t no_child_evaluate(const struct mcr_host *host, struct mcr_context *context, const struct mcr_child *child,
+                                 const struct mcr_points *at, const struct mcr_directions *toward, const struct mcr_colours *out)
+{
+    (void)host, (void)context, (void)child, (void)at, (void)toward, (void)out;
+    return MCR_E_UNSUPPORTED;
+}
+
+static int32_t no_child_draw(const struct mcr_host *host, struct mcr_context *context, const struct mcr_child *child,
+                             const struct mcr_points *at, const double *const *number, const struct mcr_directions *out, double *density)
+{
+    (void)host, (void)context, (void)child, (void)at, (void)number, (void)out, (void)density;
+    return MCR_E_UNSUPPORTED;
+}
+
+static int32_t no_child_density(const struct mcr_host *host, struct mcr_context *context, const struct mcr_child *child,
+                                const struct mcr_points *at, const struct mcr_directions *toward, double *density)
+{
+    (void)host, (void)context, (void)child, (void)at, (void)toward, (void)density;
+    return MCR_E_UNSUPPORTED;
+}
+
+/* emission, passes, albedo */
+static int32_t no_child_colour(const struct mcr_host *host, struct mcr_context *context, const struct mcr_child *child,
+                               const struct mcr_points *at, const struct mcr_colours *out)
+{
+    (void)host, (void)context, (void)child, (void)at, (void)out;
+    return MCR_E_UNSUPPORTED;
+}
+
+static int32_t no_child_delta(const struct mcr_host *host, struct mcr_context *context, const struct mcr_child *child,
+                              const struct mcr_points *at, const double *const *number, const struct mcr_directions *out,
+                              double *probability, const struct mcr_colours *weight)
+{
+    (void)host, (void)context, (void)child, (void)at, (void)number, (void)out, (void)probability, (void)weight;
+    return MCR_E_UNSUPPORTED;
+}
+
 static uint32_t has_lights(const struct mcr_host *host, struct mcr_context *context)
 {
     (void)host;
@@ -132,6 +183,14 @@ const struct mcr_host *mcr_creation_host(void)
         .material_draw = no_material_draw,
         .material_density = no_material_density,
         .has_lights = has_lights,
+        .material_child_traits = material_child_traits,
+        .material_child_evaluate = no_child_evaluate,
+        .material_child_draw = no_child_draw,
+        .material_child_density = no_child_density,
+        .material_child_emission = no_child_colour,
+        .material_child_delta = no_child_delta,
+        .material_child_passes = no_child_colour,
+        .material_child_albedo = no_child_colour,
     };
 
     return &host;

@@ -160,6 +160,13 @@ static struct mcr_setting *read_block(struct mcr_arena *arena, struct mcr_diagno
 struct mcr_node *mcr_material_create(struct mcr_arena *arena, struct mcr_diagnostics *diagnostics, struct mcr_registry *registry,
                                      const struct mcr_item *block)
 {
+    return mcr_material_create_with(arena, diagnostics, registry, block, NULL);
+}
+
+struct mcr_node *mcr_material_create_with(struct mcr_arena *arena, struct mcr_diagnostics *diagnostics, struct mcr_registry *registry,
+                                          const struct mcr_item *block, const struct mcr_value_names *names)
+{
+    struct mcr_named_values named;
     const struct mcr_descriptor *descriptor;
     struct mcr_setting *setting;
     struct mcr_node *node;
@@ -183,8 +190,14 @@ struct mcr_node *mcr_material_create(struct mcr_arena *arena, struct mcr_diagnos
     node->descriptor = descriptor;
     node->path = path;
     node->place = block->kind_place;
-    if (mcr_values_read(arena, diagnostics, descriptor, setting, count, block->kind_place, block->damaged, &node->values) || wrong ||
-        mcr_node_instantiate(node, diagnostics, 0, 0))
+    wrong |= mcr_values_read_named(arena, diagnostics, descriptor, setting, count, block->kind_place, block->damaged, names, &node->values, &named);
+    node->texture = named.texture;
+    node->child_count = named.child_count;
+    for (uint32_t k = 0; k < named.child_count; k++) {
+        node->child[k] = named.child[k];
+        node->weight[k] = 1;
+    }
+    if (wrong || mcr_node_instantiate(node, diagnostics, 0, 0))
         return NULL;
     return node;
 }

@@ -13,15 +13,20 @@
 #include <mcrender/material.h>
 #include <mcrender/sampler.h>
 
+struct mcr_texture;
+
 /* One instance. `struct mcr_child` of the public headers is a pointer to this. */
 struct mcr_node {
     const struct mcr_descriptor *descriptor;
     const char *path;              /* of the file that it came from */
     void *instance;
     struct mcr_place place;
-    struct mcr_values values;      /* checked, defaults filled */
+    struct mcr_values values;      /* checked, defaults filled; of textures the means */
+    const struct mcr_texture **texture; /* materials: by parameter, NULL where there is none; NULL: there are none at all */
     uint32_t child_count;
     struct mcr_node *child[MCR_MAX_CHILDREN];
+    uint32_t number;               /* materials: their place in the scene */
+    const struct mcr_material_traits *traits; /* materials: as the scene has them, once they are told; NULL before */
     double weight[MCR_MAX_CHILDREN];
     uint32_t technique_count;      /* directions only */
     struct mcr_technique technique[MCR_MAX_TECHNIQUES];
@@ -59,7 +64,7 @@ struct mcr_quirks {
     uint32_t wanted; /* bits */
 };
 
-/* The host table for creation: report, child_techniques and has_lights work, the rest returns MCR_E_UNSUPPORTED. */
+/* The host table for creation: report, child_techniques, material_child_traits and has_lights work, the rest returns MCR_E_UNSUPPORTED. */
 const struct mcr_host *mcr_creation_host(void);
 
 /*
@@ -68,6 +73,10 @@ const struct mcr_host *mcr_creation_host(void);
  */
 struct mcr_node *mcr_material_create(struct mcr_arena *arena, struct mcr_diagnostics *diagnostics, struct mcr_registry *registry,
                                      const struct mcr_item *block);
+/* The same where names may stand for textures and other materials. */
+struct mcr_value_names;
+struct mcr_node *mcr_material_create_with(struct mcr_arena *arena, struct mcr_diagnostics *diagnostics, struct mcr_registry *registry,
+                                          const struct mcr_item *block, const struct mcr_value_names *names);
 /* As told by the plugin. Returns 0, or -1 after an error. */
 int mcr_material_traits(const struct mcr_node *material, struct mcr_diagnostics *diagnostics, struct mcr_material_traits *traits);
 

@@ -138,6 +138,10 @@ static int check_parameter(struct check *check, uint32_t k)
     case MCR_TYPE_INTEGER:
     case MCR_TYPE_COLOUR: return check_range(check, parameter);
     case MCR_TYPE_CHOICE: return check_choices(check, parameter);
+    case MCR_TYPE_MATERIAL:
+        if (check->descriptor->kind != MCR_KIND_MATERIAL || parameter->flags & MCR_PARAMETER_VARYING || parameter->choices)
+            return fail(check, "parameter '%s' is a material, which only one of a material that does not vary can be", parameter->name);
+        return 0;
     default: return fail(check, "parameter '%s' has the unknown type %u", parameter->name, parameter->type);
     }
 }

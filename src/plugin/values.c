@@ -36,6 +36,7 @@ static const char *type_name(uint32_t type)
     case MCR_TYPE_NUMBER: return "a number";
     case MCR_TYPE_INTEGER: return "a whole number";
     case MCR_TYPE_COLOUR: return "a colour: one number, or three as (red, green, blue)";
+    case MCR_TYPE_MATERIAL: return "the name of a material";
     default: return "a word";
     }
 }
@@ -144,12 +145,14 @@ int mcr_value_check(struct mcr_diagnostics *diagnostics, const struct mcr_parame
     return wrong;
 }
 
+/* ---- a block's settings ---- */
+
 /* The parameter's place in the table, or parameter_count after an error. */
 static uint32_t find_parameter(struct mcr_diagnostics *diagnostics, const struct mcr_descriptor *descriptor,
-                               const struct mcr_setting *setting)
+                               const struct mcr_setting *setting, const struct mcr_value_names *names)
 {
-    const char *word[MCR_MAX_PARAMETERS], *near;
-    uint32_t k, count = descriptor->parameter_count;
+    const char *word[MCR_MAX_PARAMETERS + MCR_MAX_OTHERS], *near;
+    uint32_t k, count = descriptor->parameter_count, others = names ? names->word_count : 0;
     char list[1024] = "";
 
     for (k = 0; k < count; k++) {
@@ -160,28 +163,141 @@ static uint32_t find_parameter(struct mcr_diagnostics *diagnostics, const struct
     }
     mcr_report(diagnostics, MCR_ERROR, setting->place, "unknown setting '%s' of '%s', expected %s", setting->name, descriptor->name,
                count ? list : "none: it has no parameters");
-    near = mcr_nearest_word(setting->name, word, count);
+    for (k = 0; k < others && k < MCR_MAX_OTHERS; k++)
+        word[count + k] = names->word[k];
+    near = mcr_nearest_word(setting->name, word, count + k);
     if (near)
         mcr_report(diagnostics, MCR_NOTE, setting->place, "did you mean '%s'?", near);
     return count;
 }
 
-int mcr_values_read(struct mcr_arena *arena, struct mcr_diagnostics *diagnostics, const struct mcr_descriptor *descriptor,
-                    const struct mcr_setting *setting, uint32_t count, struct mcr_place place, int damaged,
-                    struct mcr_values *values)
+/* A texture must lie in the parameter's range as a whole. One without extent may be what mistakes left of it. */
+static int check_texture(struct mcr_diagnostics *diagnostics, const struct mcr_parameter *parameter, const struct mcr_value *value, const char *of,
+                         const struct mcr_varying *varying)
+{
+    const double *low = varying->min, *high = varying->max;
+    char range[160];
+
+    for (int c = 0; c < (parameter->type == MCR_TYPE_COLOUR ? 3 : 1); c++) {
+        int above = parameter->flags & MCR_PARAMETER_ABOVE_MIN ? low[c] > parameter->min : low[c] >= parameter->min;
+        int below = parameter->flags & MCR_PARAMETER_BELOW_MAX ? high[c] < parameter->max : high[c] <= parameter->max;
+
+        if ((above && below) || (low[c] == high[c] && mcr_diagnostics_errors(diagnostics) > 0))
+            continue;
+        mcr_range_text(parameter, range, sizeof range);
+        mcr_report(diagnostics, MCR_ERROR, value->place, "texture '%s' for '%s' of '%s' goes from %.10g to %.10g, expected %s", value->text,
+                   parameter->name, of, low[c], high[c], range);
+        return -1;
+    }
+    return 0;
+}
+
+/*
+ * A name that no `let` explains, as the name of a texture. Returns 1 if it is one and right, 0 if it is to be judged as a plain value, -1 after an
+ * error.
+ */
+static int read_texture(struct mcr_diagnostics *diagnostics, const struct mcr_parameter *parameter, const struct mcr_value *value, const char *of,
+                        const struct mcr_value_names *names, struct mcr_varying *varying)
+{
+    const struct mcr_value *what = mcr_value_resolve(value);
+    const char *near;
+    int takes = parameter->flags & MCR_PARAMETER_VARYING;
+
+    if (!names || what->kind != MCR_VALUE_NAME || (parameter->type != MCR_TYPE_COLOUR && parameter->type != MCR_TYPE_NUMBER))
+        return 0;
+    if (names->texture(names->data, what, parameter->type, varying)) {
+        if (takes)
+            return check_texture(diagnostics, parameter, what, of, varying) ? -1 : 1;
+        mcr_report(diagnostics, MCR_ERROR, value->place, "'%s' of '%s' is the texture '%s', expected %s: it cannot vary over the surface",
+                   parameter->name, of, what->text, type_name(parameter->type));
+        return -1;
+    }
+    if (!takes)
+        return 0;
+    mcr_report(diagnostics, MCR_ERROR, value->place, "unknown name '%s' for '%s' of '%s', expected %s, or the name of a texture", what->text,
+               parameter->name, of, type_name(parameter->type));
+    near = names->near_texture(names->data, what->text);
+    if (near)
+        mcr_report(diagnostics, MCR_NOTE, value->place, "did you mean '%s'?", near);
+    return -1;
+}
+
+/* Another material's name. Its place among the children becomes the number. */
+static int read_material(struct mcr_diagnostics *diagnostics, const struct mcr_parameter *parameter, const struct mcr_value *value, const char *of,
+                         const struct mcr_value_names *names, struct mcr_named_values *named, double number[3])
+{
+    struct mcr_node *child;
+
+    if (mcr_value_resolve(value)->kind == MCR_VALUE_ERROR)
+        return -1;
+    if (value->kind != MCR_VALUE_NAME || value->bound || !names) {
+        report_kind(diagnostics, parameter, value, of);
+        return -1;
+    }
+    if (named->child_count == MCR_MAX_CHILDREN) {
+        mcr_report(diagnostics, MCR_ERROR, value->place, "'%s' has more than %u materials inside it", of, MCR_MAX_CHILDREN);
+        return -1;
+    }
+    child = names->material(names->data, value);
+    if (!child)
+        return -1;
+    number[0] = named->child_count;
+    named->child[named->child_count++] = child;
+    return 0;
+}
+
+/* What mcr_values_read_named works on. */
+struct reader {
+    struct mcr_arena *arena;
+    struct mcr_diagnostics *diagnostics;
+    const struct mcr_descriptor *descriptor;
+    const struct mcr_value_names *names;
+    struct mcr_named_values *named;
+    double *number;
+};
+
+static int read_value(struct reader *reader, uint32_t k, const struct mcr_value *value)
+{
+    const struct mcr_parameter *parameter = mcr_descriptor_parameter(reader->descriptor, k);
+    const char *of = reader->descriptor->name;
+    struct mcr_named_values *named = reader->named;
+    double *number = reader->number + 3 * (size_t)k;
+    struct mcr_varying varying;
+    int texture;
+
+    if (parameter->type == MCR_TYPE_MATERIAL)
+        return read_material(reader->diagnostics, parameter, value, of, reader->names, named, number);
+    texture = read_texture(reader->diagnostics, parameter, value, of, reader->names, &varying);
+    if (texture <= 0)
+        return texture < 0 ? -1 : mcr_value_check(reader->diagnostics, parameter, value, of, number);
+    if (!named->texture && !(named->texture = mcr_arena_alloc(reader->arena, reader->descriptor->parameter_count, sizeof *named->texture))) {
+        mcr_report(reader->diagnostics, MCR_ERROR, value->place, "out of memory");
+        return -1;
+    }
+    named->texture[k] = varying.texture;
+    for (int c = 0; c < (parameter->type == MCR_TYPE_COLOUR ? 3 : 1); c++)
+        number[c] = varying.mean[c] + 0.0;
+    return 0;
+}
+
+int mcr_values_read_named(struct mcr_arena *arena, struct mcr_diagnostics *diagnostics, const struct mcr_descriptor *descriptor,
+                          const struct mcr_setting *setting, uint32_t count, struct mcr_place place, int damaged,
+                          const struct mcr_value_names *names, struct mcr_values *values, struct mcr_named_values *named)
 {
     uint32_t parameters = descriptor->parameter_count;
     double *number = mcr_arena_alloc(arena, parameters, 3 * sizeof *number);
     uint32_t *given = mcr_arena_alloc(arena, parameters, sizeof *given);
+    struct reader reader = {arena, diagnostics, descriptor, names, named, number};
     struct mcr_place first[MCR_MAX_PARAMETERS];
     int wrong = 0;
 
+    memset(named, 0, sizeof *named);
     if (!number || !given) {
         mcr_report(diagnostics, MCR_ERROR, place, "out of memory");
         return -1;
     }
     for (uint32_t s = 0; s < count; s++) {
-        uint32_t k = find_parameter(diagnostics, descriptor, &setting[s]);
+        uint32_t k = find_parameter(diagnostics, descriptor, &setting[s], names);
 
         if (k == parameters) {
             wrong = -1;
@@ -193,7 +309,7 @@ int mcr_values_read(struct mcr_arena *arena, struct mcr_diagnostics *diagnostics
         } else {
             given[k] = 1;
             first[k] = setting[s].place;
-            if (mcr_value_check(diagnostics, mcr_descriptor_parameter(descriptor, k), setting[s].value, descriptor->name, number + 3 * k))
+            if (read_value(&reader, k, setting[s].value))
                 wrong = -1;
         }
     }
@@ -207,8 +323,17 @@ int mcr_values_read(struct mcr_arena *arena, struct mcr_diagnostics *diagnostics
                        type_name(parameter->type));
         wrong |= parameter->flags & MCR_PARAMETER_REQUIRED ? -1 : 0;
         for (uint32_t c = 0; c < (parameter->type == MCR_TYPE_COLOUR ? 3 : 1); c++)
-            number[3 * k + c] = parameter->fallback[c] + 0.0;
+            number[3 * k + c] = parameter->type == MCR_TYPE_MATERIAL ? -1 : parameter->fallback[c] + 0.0;
     }
     *values = (struct mcr_values){sizeof *values, parameters, number, given};
     return wrong;
+}
+
+int mcr_values_read(struct mcr_arena *arena, struct mcr_diagnostics *diagnostics, const struct mcr_descriptor *descriptor,
+                    const struct mcr_setting *setting, uint32_t count, struct mcr_place place, int damaged,
+                    struct mcr_values *values)
+{
+    struct mcr_named_values named;
+
+    return mcr_values_read_named(arena, diagnostics, descriptor, setting, count, place, damaged, NULL, values, &named);
 }

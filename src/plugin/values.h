@@ -10,6 +10,7 @@
 
 #define MCR_MAX_PARAMETERS 64u
 #define MCR_MAX_CHOICES 64u
+#define MCR_MAX_OTHERS 16u     /* settings that a block takes beside its plugin's */
 #define MCR_MAX_WORD 64u /* bytes of a word, without its NUL */
 
 /* One `name value` of a block or `name=value` of a call. */
@@ -17,6 +18,35 @@ struct mcr_setting {
     const char *name;
     struct mcr_place place; /* of the name */
     const struct mcr_value *value;
+};
+
+struct mcr_texture; /* src/scene makes and reads them; here they are handed on */
+struct mcr_node;
+
+/* A texture in the place of a value: what it lies between, and its mean; of a number, in the first component. */
+struct mcr_varying {
+    const struct mcr_texture *texture;
+    double min[3], max[3], mean[3];
+};
+
+/* What names in a material may stand for beside what the language knows, and what a material takes beside its plugin's parameters. */
+struct mcr_value_names {
+    void *data;
+    const char *const *word;  /* other settings, for suggestions */
+    uint32_t word_count;
+    /* Returns 1 and fills `out` where a texture has the value's name, which is used from then on; else 0, and tells nothing. */
+    int (*texture)(void *data, const struct mcr_value *value, uint32_t type, struct mcr_varying *out);
+    /* A name that is near, or NULL. */
+    const char *(*near_texture)(void *data, const char *name);
+    /* The instance of the material that the value names, made at need; NULL after an error that was recorded. */
+    struct mcr_node *(*material)(void *data, const struct mcr_value *value);
+};
+
+/* What is left of values that are no numbers, by parameter; NULL where there is none. */
+struct mcr_named_values {
+    const struct mcr_texture **texture; /* NULL: no value is a texture */
+    uint32_t child_count;
+    struct mcr_node *child[MCR_MAX_CHILDREN]; /* materials, in the order of the text; the parameters hold their places */
 };
 
 /*
@@ -27,6 +57,10 @@ struct mcr_setting {
 int mcr_values_read(struct mcr_arena *arena, struct mcr_diagnostics *diagnostics, const struct mcr_descriptor *descriptor,
                     const struct mcr_setting *setting, uint32_t count, struct mcr_place place, int damaged,
                     struct mcr_values *values);
+/* The same where names may stand for textures (whose means are in `values`) and materials. */
+int mcr_values_read_named(struct mcr_arena *arena, struct mcr_diagnostics *diagnostics, const struct mcr_descriptor *descriptor,
+                          const struct mcr_setting *setting, uint32_t count, struct mcr_place place, int damaged,
+                          const struct mcr_value_names *names, struct mcr_values *values, struct mcr_named_values *named);
 
 /* What a value stands for: names that a `let` gives a value are followed to it. */
 const struct mcr_value *mcr_value_resolve(const struct mcr_value *value);

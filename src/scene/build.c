@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The tree of a scene file becomes an immutable scene: the order of the work, room for the geometry, and groups. */
 #include "scene/build.h"
+#include "scene/texture_table.h"
 #include "scene/vector.h"
 
 #define ROLE(role) (1u << (role))
@@ -32,12 +33,12 @@ static uint64_t count_shapes(struct mcr_build *build, const struct mcr_item *ite
         if (strcmp(word->word, "mesh") == 0) {
             mcr_build_mesh_room(build, &item[i]);
         } else {
-            /* Two triangles for a quad with any corners; three normals and uv for a single triangle. */
+            /* Two triangles and four uv for a quad with any corners; three normals and uv for a single triangle. */
             uint64_t triangles = strcmp(word->word, "quad") == 0 ? 2 : strcmp(word->word, "triangle") == 0 ? 1 : 0;
             build->triangle_room += triangles;
             build->vertex_room += triangles ? 2 + triangles : 0;
             build->normal_room += triangles == 1 ? 3 : 0;
-            build->uv_room += triangles == 1 ? 3 : 0;
+            build->uv_room += triangles ? 2 + triangles : 0;
         }
     }
     return shapes;
@@ -57,6 +58,7 @@ static int make_room(struct mcr_build *build, const struct mcr_item *root)
     struct mcr_scene *scene = build->scene;
     struct mcr_triangles *t = &scene->triangles;
     uint64_t shapes = count_shapes(build, root->item, root->count);
+    build->uv_room += 3; /* plain_uv */
     if (shapes > INT32_MAX || build->triangle_room > INT32_MAX || build->vertex_room >= UINT32_MAX || build->normal_room >= UINT32_MAX ||
         build->uv_room >= UINT32_MAX) {
         mcr_error(build, (struct mcr_place){ 0 }, "the scene has %llu shapes and up to %llu triangles, at most %d surfaces are allowed",
@@ -75,12 +77,19 @@ static int make_room(struct mcr_build *build, const struct mcr_item *root)
         t->nz = mcr_build_alloc(build, build->normal_room, sizeof *t->nz);
         t->normal = mcr_build_alloc(build, build->triangle_room, sizeof *t->normal);
     }
-    if (has_setting(root->item, root->count, "uv")) {
+    if (build->needs || has_setting(root->item, root->count, "uv")) {
         t->u = mcr_build_alloc(build, build->uv_room, sizeof *t->u);
         t->v = mcr_build_alloc(build, build->uv_room, sizeof *t->v);
         t->uv = mcr_build_alloc(build, build->triangle_room, sizeof *t->uv);
     }
-    return build->short_of_memory ? -1 : 0;
+    if (build->short_of_memory)
+        return -1;
+    if (build->needs) {
+        build->plain_uv = mcr_build_add_uv(build, 0, 0);
+        mcr_build_add_uv(build, 1, 0);
+        mcr_build_add_uv(build, 0, 1);
+    }
+    return 0;
 }
 
 static void build_item(struct mcr_build *build, const struct mcr_item *item, const struct mcr_transform *transform);
@@ -137,6 +146,7 @@ static const struct mcr_item *single(struct mcr_build *build, const struct mcr_i
 static void build_all(struct mcr_build *build, const struct mcr_item *root)
 {
     const uint32_t top = SHAPES | ROLE(MCR_BLOCK_CAMERA) | ROLE(MCR_BLOCK_FILM) | ROLE(MCR_BLOCK_RENDER) | ROLE(MCR_BLOCK_MATERIAL) |
+                         ROLE(MCR_BLOCK_TEXTURE) |
                          ROLE(MCR_BLOCK_STUDY);
     const struct mcr_item *camera = single(build, root, "camera");
     struct mcr_transform to_camera;
@@ -150,12 +160,16 @@ static void build_all(struct mcr_build *build, const struct mcr_item *root)
     mcr_build_camera(build, camera);
     mcr_build_film(build, single(build, root, "film"));
     mcr_build_render(build, single(build, root, "render"));
+    mcr_build_textures(build, root);
+    if (build->short_of_memory)
+        return;
     mcr_build_materials(build, root);
     if (build->short_of_memory)
         return;
     mcr_transform_init(&to_camera, build->scene->camera.world);
     mcr_build_geometry(build, root, &to_camera);
     mcr_build_unused_materials(build);
+    mcr_build_unused_textures(build);
     mcr_build_light_names(build);
     if (build->short_of_memory)
         return;
@@ -191,6 +205,10 @@ void mcr_scene_destroy(struct mcr_scene *scene)
     for (uint32_t i = 0; i < scene->material_count; i++)
         if (scene->material[i].node)
             mcr_material_destroy(scene->material[i].node);
+    for (uint32_t i = 0; i < scene->texture_count; i++)
+        if (scene->texture[i].texture)
+            mcr_texture_release(scene->texture[i].texture);
     scene->sampler = NULL;
+    scene->texture_count = 0;
     scene->material_count = 0;
 }

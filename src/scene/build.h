@@ -22,6 +22,17 @@ struct mcr_build {
     } *sorted;                             /* materials by name */
     const char **names;                    /* the same, for suggestions */
     uint8_t *used;                         /* by material */
+    const struct mcr_item **material_block; /* by material */
+    uint8_t *material_state;               /* by material: how far it is made, enum of materials.c */
+    uint32_t material_depth;               /* materials that are being made, one inside the other */
+
+    struct mcr_named_texture {
+        const char *name;
+        uint32_t number;
+    } *textures;                           /* by name */
+    const char **texture_names;            /* the same, for suggestions */
+    uint8_t *texture_used;                 /* by texture */
+    uint64_t texture_memory, texture_bytes; /* what pictures may take and what they take */
 
     struct mcr_named_light {
         const char *name;
@@ -31,6 +42,8 @@ struct mcr_build {
     uint32_t named_light_count;
 
     uint64_t vertex_room, triangle_room, normal_room, uv_room;
+    uint32_t needs;                        /* MCR_NEEDS_* of all materials: triangles without coordinates are given some */
+    uint32_t plain_uv;                     /* the first of 3 coordinates for them: (0, 0), (1, 0), (0, 1) */
     int planes_emit;                       /* a plane's material emits */
     struct mcr_place plane_place;          /* of the first such plane */
     double extent;                         /* the largest coordinate relative to the camera, world units */
@@ -122,6 +135,18 @@ void mcr_build_materials(struct mcr_build *build, const struct mcr_item *root);
 int64_t mcr_build_find_material(struct mcr_build *build, const struct mcr_settings *settings);
 void mcr_build_unused_materials(struct mcr_build *build);
 
+/* textures.c: before materials, which name them. */
+void mcr_build_textures(struct mcr_build *build, const struct mcr_item *root);
+/* The texture that a value of kind MCR_VALUE_NAME names, which counts as used from here on; NULL after an error. In a scene with errors
+ * its colours may be all 0. */
+const struct mcr_texture *mcr_build_find_texture(struct mcr_build *build, const struct mcr_value *value);
+/* Whether there is a texture of this name; nothing is told, and it is not used by that. */
+int mcr_build_is_texture(const struct mcr_build *build, const char *name);
+/* texture_image.c: the settings of one that is a picture. */
+void mcr_build_image(struct mcr_build *build, const struct mcr_settings *settings, struct mcr_texture *texture);
+/* After all that may name textures. */
+void mcr_build_unused_textures(struct mcr_build *build);
+
 /* All shapes and groups of the root block. */
 void mcr_build_geometry(struct mcr_build *build, const struct mcr_item *root, const struct mcr_transform *to_camera);
 /* One shape, moved by `transform` into the camera's frame, still in world units. */
@@ -140,6 +165,8 @@ struct mcr_shape *mcr_build_new_shape(struct mcr_build *build, const struct mcr_
  */
 int mcr_build_add_triangle(struct mcr_build *build, uint32_t material, int mirrored, const uint32_t vertex[3], const uint32_t normal[3],
                            const uint32_t uv[3]);
+/* Stores a pair of surface coordinates; returns its number. */
+uint32_t mcr_build_add_uv(struct mcr_build *build, double u, double v);
 /* Stores a vertex; returns its number. One that is too far out is an error at `place`. */
 uint32_t mcr_build_add_vertex(struct mcr_build *build, const double at[3], const char *of, struct mcr_place place);
 

@@ -44,8 +44,10 @@ int mcr_build_add_triangle(struct mcr_build *build, uint32_t material, int mirro
     store(triangles->vertex[i], corner, mirrored);
     if (triangles->normal)
         store(triangles->normal[i], normal, mirrored);
-    if (triangles->uv)
-        store(triangles->uv[i], uv, mirrored);
+    if (triangles->uv) {
+        const uint32_t plain[3] = { build->plain_uv, build->plain_uv + 1, build->plain_uv + 2 };
+        store(triangles->uv[i], uv ? uv : build->needs ? plain : NULL, mirrored);
+    }
     triangles->material[i] = material;
     triangles->count++;
     return 1;
@@ -69,11 +71,12 @@ static int add_normal(struct mcr_build *build, const struct mcr_transform *trans
     return 0;
 }
 
-static void add_uv(struct mcr_build *build, const double uv[2])
+uint32_t mcr_build_add_uv(struct mcr_build *build, double u, double v)
 {
     struct mcr_triangles *triangles = &build->scene->triangles;
-    triangles->u[triangles->uv_count] = uv[0];
-    triangles->v[triangles->uv_count++] = uv[1];
+    triangles->u[triangles->uv_count] = u;
+    triangles->v[triangles->uv_count] = v;
+    return triangles->uv_count++;
 }
 
 void mcr_build_triangle(struct mcr_build *build, const struct mcr_settings *settings, const struct mcr_transform *transform,
@@ -106,7 +109,7 @@ void mcr_build_triangle(struct mcr_build *build, const struct mcr_settings *sett
                 return;
         }
         if (has_uv == 0)
-            add_uv(build, &uv[2 * k]);
+            mcr_build_add_uv(build, uv[2 * k], uv[2 * k + 1]);
     }
     if (!mcr_build_add_triangle(build, material, transform->mirrored, corner, has_normals == 0 ? normals : NULL, has_uv == 0 ? uvs : NULL))
         mcr_error(build, settings->place, "'triangle' has no area to rounding where it is moved to");
@@ -154,7 +157,7 @@ static int add_per_vertex(struct mcr_build *build, const struct mcr_settings *se
                              MCR_EXTENT_LIMIT, p) != 0)
             result = -1;
         else if (width == 2)
-            add_uv(build, p);
+            mcr_build_add_uv(build, p[0], p[1]);
         else if (add_normal(build, transform, &item[i], settings->of, p) != 0)
             result = -1;
     }

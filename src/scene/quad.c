@@ -100,7 +100,7 @@ static void build_corners(struct mcr_build *build, const struct mcr_settings *se
                           uint32_t material)
 {
     double c[4][3], at[3];
-    uint32_t vertex[4];
+    uint32_t vertex[4], uv[4] = { 0 };
     if (mcr_read_tuples(build, settings, QUAD_CORNERS, 4, 3, c[0]) != 0 || check_corners(build, settings->value[QUAD_CORNERS], c) != 0)
         return;
     if (is_parallelogram(c)) {
@@ -113,10 +113,13 @@ static void build_corners(struct mcr_build *build, const struct mcr_settings *se
     for (int k = 0; k < 4; k++) {
         mcr_transform_point(transform, c[k], at);
         vertex[k] = mcr_build_add_vertex(build, at, "quad", settings->place);
+        if (build->needs)
+            uv[k] = mcr_build_add_uv(build, k == 1 || k == 2, k >= 2);
     }
     for (uint32_t k = 0; k < 2; k++) {
         const uint32_t corner[3] = { vertex[0], vertex[k + 1], vertex[k + 2] };
-        if (!mcr_build_add_triangle(build, material, transform->mirrored, corner, NULL, NULL))
+        const uint32_t coordinates[3] = { uv[0], uv[k + 1], uv[k + 2] };
+        if (!mcr_build_add_triangle(build, material, transform->mirrored, corner, NULL, build->needs ? coordinates : NULL))
             mcr_error(build, settings->place, "'quad' has no area to rounding where it is moved to");
     }
 }

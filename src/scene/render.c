@@ -111,6 +111,7 @@ void mcr_build_render(struct mcr_build *build, const struct mcr_item *block)
     check_available(build, &settings, RENDER_PRECISION, MCR_PRECISION_DOUBLE, number);
     render->precision = MCR_PRECISION_DOUBLE;
     render->mis_power = number_of(build, &settings, RENDER_MIS) == 1;
+    build->texture_memory = (uint64_t)(number_of(build, &settings, RENDER_TEXTURE_MEMORY) * 1048576);
     mcr_read_colour(build, &settings, RENDER_BACKGROUND, render->background);
     read_roulette(build, &settings);
     render->compat = mcr_read_compat(build, &settings, RENDER_COMPAT);

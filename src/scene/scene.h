@@ -17,6 +17,7 @@
 #include "plugin/registry.h"
 #include "scene/lights.h"
 #include "scene/study.h"
+#include "scene/texture.h"
 
 enum mcr_shape_kind {
     MCR_SHAPE_PLANE,         /* infinite: c a point, n */
@@ -35,6 +36,8 @@ struct mcr_shape {
     double e[3][3];
     double n[3];        /* unit, front; plane, parallelogram, disk */
     double radius;
+    double axis[3][3];  /* for surface coordinates: sphere: unit vectors, turned with it; plane: the steps of 1 in u and in v, world lengths */
+    double uv[2];       /* plane: of c */
     struct mcr_place place;
 };
 
@@ -48,7 +51,22 @@ struct mcr_triangles {
     double *nx, *ny, *nz;        /* normal_count, unit */
     uint32_t (*normal)[3];       /* count, or NULL if no mesh has normals; UINT32_MAX: this triangle has none */
     double *u, *v;               /* uv_count */
-    uint32_t (*uv)[3];           /* count, or NULL */
+    uint32_t (*uv)[3];           /* count, or NULL if no material needs coordinates and no shape gives any */
+};
+
+/* What a material asks of the points on its surface. */
+#define MCR_NEEDS_COORDINATES 1u /* u and v: it has textures */
+#define MCR_NEEDS_TANGENTS 2u    /* its plugin says so, or it has a normal map */
+#define MCR_NEEDS_NORMALS 4u     /* shading normals of its own: a normal map or bumps */
+
+/* What a material block may set beside its plugin's parameters: the core does it for every plugin. */
+struct mcr_surface_settings {
+    uint32_t emits;                              /* MCR_MATERIAL_EMITS_*: the sides that radiate `emission`; 0: none */
+    double emission[3];                          /* of a texture the mean */
+    const struct mcr_texture *emission_texture;  /* or NULL */
+    const struct mcr_texture *normal_map, *bump; /* or NULL */
+    double normal_strength;
+    double bump_height;                          /* world length */
 };
 
 struct mcr_scene_material {
@@ -56,6 +74,14 @@ struct mcr_scene_material {
     struct mcr_place place;
     struct mcr_node *node;                       /* descriptor is a struct mcr_material_plugin */
     struct mcr_material_traits traits;
+    uint32_t needs;                              /* MCR_NEEDS_* */
+    struct mcr_surface_settings surface;
+};
+
+struct mcr_scene_texture {
+    const char *name;
+    struct mcr_place place;
+    struct mcr_texture *texture; /* immutable once the scene is built */
 };
 
 enum mcr_camera_kind { MCR_CAMERA_PERSPECTIVE, MCR_CAMERA_ORTHOGRAPHIC, MCR_CAMERA_THIN_LENS };
@@ -140,6 +166,8 @@ struct mcr_scene {
     struct mcr_sampler *sampler;
     uint32_t material_count;
     struct mcr_scene_material *material;
+    uint32_t texture_count;
+    struct mcr_scene_texture *texture;
     uint32_t shape_count;
     struct mcr_shape *shape;
     struct mcr_triangles triangles;

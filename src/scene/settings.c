@@ -99,7 +99,8 @@ static int match_setting(struct mcr_build *build, const struct mcr_item *item, s
 {
     int index = find_setting(settings->word, item->word);
     if (index < 0) {
-        if (mcr_scene_block(item->word, NULL) || strcmp(item->word, "camera") == 0 || strcmp(item->word, "light") == 0)
+        if (mcr_scene_block(item->word, NULL) || strcmp(item->word, "camera") == 0 ||
+            strcmp(item->word, "texture") == 0 || strcmp(item->word, "light") == 0)
             mcr_error(build, item->place, "'%s' opens a block, it is no setting of '%s'", item->word, settings->of);
         else if (item->value.kind == MCR_VALUE_ERROR)
             settings->damaged = 1; /* perhaps no setting at all, but what was left behind by a mistake */

@@ -35,6 +35,24 @@ static int read_normal(struct mcr_build *build, const struct mcr_settings *setti
     return 0;
 }
 
+static void basis(const double n[3], double p[3], double q[3]);
+
+/* Coordinates of a plane count world lengths along two axes of the text's frame, which the transform takes along; both are 0 at the point given. */
+static void plane_coordinates(struct mcr_shape *shape, const struct mcr_transform *transform, const double point[3], const double normal[3])
+{
+    double unit[3], axis[2][3], offset[3];
+    mcr_unit(normal, unit);
+    basis(unit, axis[0], axis[1]);
+    mcr_subtract(shape->c, point, offset);
+    for (int i = 0; i < 2; i++)
+        mcr_transform_vector(transform, axis[i], shape->axis[i]);
+    for (int i = 0; i < 2; i++) {
+        double dual[3];
+        mcr_cross(shape->axis[1 - i], shape->n, dual);
+        shape->uv[i] = mcr_dot(dual, offset) / mcr_dot(dual, shape->axis[i]);
+    }
+}
+
 static void build_plane(struct mcr_build *build, const struct mcr_settings *settings, const struct mcr_transform *transform,
                         uint32_t material)
 {
@@ -50,6 +68,7 @@ static void build_plane(struct mcr_build *build, const struct mcr_settings *sett
     distance = mcr_dot(shape->n, point);
     for (int i = 0; i < 3; i++)
         shape->c[i] = distance * shape->n[i];
+    plane_coordinates(shape, transform, point, normal);
 }
 
 static void build_sphere(struct mcr_build *build, const struct mcr_settings *settings, const struct mcr_transform *transform,
@@ -65,6 +84,9 @@ static void build_sphere(struct mcr_build *build, const struct mcr_settings *set
     mcr_copy(center, shape->c);
     if (factor > 0) {
         shape->radius = factor * radius;
+        for (int j = 0; j < 3; j++)
+            for (int i = 0; i < 3; i++)
+                shape->axis[j][i] = transform->l[i][j] / factor;
         return;
     }
     for (int j = 0; j < 3; j++)

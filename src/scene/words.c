@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "scene/words.h"
 
+#include <math.h>
+
 #include <string.h>
 
 #include "image/tone.h"
@@ -95,6 +97,8 @@ static const struct mcr_parameter render[] = {
     [RENDER_MIS] = CHOICE("mis", "balance|power", "Heuristic by which techniques are combined."),
     [RENDER_BATCH] = ROW("batch", MCR_TYPE_INTEGER, 0, "", 0, 65536, 0, 0, 0, "Paths in a batch; 0 chooses."),
     [RENDER_COMPAT] = WORD("compat", MCR_WORD_COMPAT, 0, "Known mistakes to make on purpose, so that a study can show what each does; none by default."),
+    [RENDER_TEXTURE_MEMORY] = ROW("texture_memory", MCR_TYPE_NUMBER, ABOVE, "MiB", 0, 1048576, MCR_TEXTURE_MEMORY, 0, 0,
+                                  "What the pictures of all textures may take together; those that take more are reduced."),
 };
 
 #define WORDS(word, words, text)                                                                                                   \
@@ -228,6 +232,46 @@ static const struct mcr_parameter transform[] = {
     [STEP_LOOKAT] = WORD("lookat", MCR_WORD_LOOKAT, 0, "Puts the origin at `from`, turns +z toward `to` and +y toward `up`."),
 };
 
+#define TEXTURE                                                                                                                    \
+    [TEXTURE_SCALE] = ROW("scale", MCR_WORD_PAIR_OR_NUMBER, 0, "", -MCR_TEXTURE_SCALE_MOST, MCR_TEXTURE_SCALE_MOST, 1, 1, 0,        \
+                          "Multiplies u and v, by one factor or two: how often the texture stands along a unit."),                \
+    [TEXTURE_OFFSET] = ROW("offset", MCR_WORD_UV, 0, "", -MCR_TEXTURE_SCALE_MOST, MCR_TEXTURE_SCALE_MOST, 0, 0, 0,                  \
+                           "Added to u and v after that.")
+
+static const struct mcr_parameter checker[] = {
+    TEXTURE,
+    [CHECKER_EVEN] = ROW("even", MCR_TYPE_COLOUR, REQUIRED, "", -FAR, FAR, 0, 0, 0, "Colour of the field at (0, 0) to (1, 1)."),
+    [CHECKER_ODD] = ROW("odd", MCR_TYPE_COLOUR, REQUIRED, "", -FAR, FAR, 0, 0, 0, "Colour of its neighbours."),
+    [CHECKER_FILTER] = CHOICE("filter", "box|none", "Whether a footprint sees the mean of what it covers."),
+};
+
+static const struct mcr_parameter surface[SURFACE_COUNT] = {
+    [SURFACE_EMISSION] = ROW("emission", MCR_TYPE_COLOUR, MCR_PARAMETER_VARYING, "W/(sr m^2)", 0, HUGE_VAL, 0, 0, 0,
+                             "Radiance that the surface emits beside what its material does; a colour or a texture."),
+    [SURFACE_EMISSION_SIDES] = CHOICE("emission_sides", "front|both", "The sides that emit it."),
+    [SURFACE_NORMAL_MAP] = WORD("normal_map", MCR_WORD_TEXTURE, 0, "Texture of shading normals in tangent space."),
+    [SURFACE_NORMAL_STRENGTH] = ROW("normal_strength", MCR_TYPE_NUMBER, 0, "", 0, 1e6, 1, 0, 0, "Multiplies the slopes of the normal map."),
+    [SURFACE_BUMP] = WORD("bump", MCR_WORD_TEXTURE, 0, "Texture of heights that tilt the shading normal."),
+    [SURFACE_BUMP_HEIGHT] = ROW("bump_height", MCR_TYPE_NUMBER, 0, "", -FAR, FAR, 0, 0, 0, "Length that the height 1 stands for; needed with bump."),
+};
+static const struct mcr_parameter image[] = {
+    TEXTURE,
+    [IMAGE_FILE] = WORD("file", MCR_WORD_TEXT, REQUIRED, "The picture, relative to the file that names it."),
+    [IMAGE_WRAP] = WORD("wrap", MCR_WORD_WRAP, 0, "What is beside the picture; repeat by default."),
+    [IMAGE_FILTER] = { .size = sizeof(struct mcr_parameter), .type = MCR_TYPE_CHOICE, .name = "filter", .unit = "",
+                       .choices = "nearest|bilinear|mipmap", .fallback = { 1 }, .summary = "How a value is made of texels." },
+    [IMAGE_COLOUR] = CHOICE("colour", "auto|linear|srgb", "How numbers are encoded; auto goes by the file."),
+    [IMAGE_CHANNEL] = CHOICE("channel", "auto|red|green|blue|alpha|luminance", "One number instead of the colour."),
+};
+static const struct mcr_parameter gradient[] = {
+    TEXTURE,
+    [GRADIENT_FROM] = ROW("from", MCR_TYPE_COLOUR, 0, "", -FAR, FAR, 0, 0, 0, "Colour at the start, with to."),
+    [GRADIENT_TO] = ROW("to", MCR_TYPE_COLOUR, 0, "", -FAR, FAR, 0, 0, 0, "Colour at the end."),
+    [GRADIENT_STOPS] = WORD("stops", MCR_WORD_STOPS, 0, "Or positions from 0 to 1 in ascending order, each with its colour."),
+    [GRADIENT_ALONG] = CHOICE("along", "u|v|radial", "From left to right, from bottom to top, or from (0.5, 0.5) to a distance of 0.5."),
+    [GRADIENT_WRAP] = CHOICE("wrap", "clamp|repeat|mirror", "What comes before the start and behind the end."),
+};
+
 #define BLOCK(word, kind, role, table, text) { word, kind, role, COUNT(table), table, text }
 
 const struct mcr_block_word mcr_scene_blocks[] = {
@@ -237,7 +281,10 @@ const struct mcr_block_word mcr_scene_blocks[] = {
     BLOCK("film", NULL, MCR_BLOCK_FILM, film, "The picture."),
     BLOCK("render", NULL, MCR_BLOCK_RENDER, render, "How it is computed."),
     BLOCK("study", NULL, MCR_BLOCK_STUDY, study, "What `mcrender study` compares; other commands check it and do without."),
-    { "material", NULL, MCR_BLOCK_MATERIAL, 0, NULL, "A named material; its kind is a plugin, whose parameters are its settings." },
+    BLOCK("material", NULL, MCR_BLOCK_MATERIAL, surface, "A named material; its kind is a plugin, whose parameters are its settings, beside these."),
+    BLOCK("texture", "image", MCR_BLOCK_TEXTURE, image, "A picture from a file."),
+    BLOCK("texture", "checker", MCR_BLOCK_TEXTURE, checker, "Two colours, field by field."),
+    BLOCK("texture", "gradient", MCR_BLOCK_TEXTURE, gradient, "Colours that pass into each other."),
     BLOCK("light", "point", MCR_BLOCK_LIGHT, point, "A point that radiates alike in all directions."),
     BLOCK("light", "spot", MCR_BLOCK_LIGHT, spot, "A point that radiates into a cone."),
     BLOCK("light", "sun", MCR_BLOCK_LIGHT, sun, "Parallel light, or a disk that is infinitely far."),
@@ -307,6 +354,11 @@ const char *mcr_word_form(uint32_t type)
         [MCR_WORD_WHOLES] = "a whole number or a tuple of them",
         [MCR_WORD_CHOICES] = "a word or a tuple of words",
         [MCR_WORD_COMPATS] = "none, a quirk such as clamp, or a tuple of these and of tuples",
+        [MCR_WORD_PAIR_OR_NUMBER] = "a number or 2 numbers (u, v)",
+        [MCR_WORD_UV] = "2 numbers (u, v)",
+        [MCR_WORD_WRAP] = "repeat, mirror or clamp, or 2 of them (for u, for v)",
+        [MCR_WORD_TEXTURE] = "the name of a texture",
+        [MCR_WORD_STOPS] = "a tuple of stops (position, colour)",
         [MCR_WORD_TRANSFORM] = "a block transform { ... }",
         [MCR_TYPE_NUMBER] = "a number",
         [MCR_TYPE_INTEGER] = "a whole number",

@@ -38,6 +38,11 @@ enum mcr_word_type {
     MCR_WORD_WHOLES,      /* a whole number, or a tuple of them */
     MCR_WORD_CHOICES,     /* one of the words of `choices`, or a tuple of them */
     MCR_WORD_COMPATS,     /* a tuple of what `compat` takes, or one such */
+    MCR_WORD_PAIR_OR_NUMBER, /* x, or (u, v) */
+    MCR_WORD_UV,          /* (u, v) */
+    MCR_WORD_WRAP,        /* a word of `choices`, or (for u, for v) */
+    MCR_WORD_TEXTURE,     /* a texture's name */
+    MCR_WORD_STOPS,       /* ((position, colour), ...) */
     MCR_WORD_TRANSFORM    /* a block of steps */
 };
 
@@ -46,13 +51,13 @@ const char *mcr_word_form(uint32_t type);
 
 enum mcr_block_role {
     MCR_BLOCK_CAMERA, MCR_BLOCK_FILM, MCR_BLOCK_RENDER, MCR_BLOCK_MATERIAL, MCR_BLOCK_SHAPE, MCR_BLOCK_GROUP, MCR_BLOCK_TRANSFORM,
-    MCR_BLOCK_STUDY, MCR_BLOCK_REFERENCE, MCR_BLOCK_LIGHT
+    MCR_BLOCK_STUDY, MCR_BLOCK_REFERENCE, MCR_BLOCK_TEXTURE, MCR_BLOCK_LIGHT
 };
 
 /* A block, or a call with named arguments (filters). */
 struct mcr_block_word {
     const char *word;
-    const char *kind;    /* of a camera or a light, else NULL */
+    const char *kind;    /* of a camera, a texture or a light, else NULL */
     uint32_t role;       /* enum mcr_block_role */
     uint32_t count;
     const struct mcr_parameter *setting;
@@ -62,7 +67,7 @@ struct mcr_block_word {
 extern const struct mcr_block_word mcr_scene_blocks[];
 extern const uint32_t mcr_scene_block_count;
 
-/* The row of a block by its word and, for cameras and lights, its kind; NULL if there is none. */
+/* The row of a block by its word and, for cameras, textures and lights, its kind; NULL if there is none. */
 const struct mcr_block_word *mcr_scene_block(const char *word, const char *kind);
 
 /* Arguments of `filter`: box(radius=0.5), tent(radius=1), gaussian(sigma=0.5, radius=1.5), mitchell(radius=2, b=1/3, c=1/3). In the order of enum mcr_filter_kind. */
@@ -82,7 +87,7 @@ enum { TONE_WHITE };
 enum { FILTER_RADIUS, FILTER_SIGMA, FILTER_B = 1, FILTER_C };
 enum {
     RENDER_SAMPLER, RENDER_SPP, RENDER_DEPTH, RENDER_SEED, RENDER_THREADS, RENDER_REPLICATES, RENDER_ROULETTE, RENDER_BACKGROUND,
-    RENDER_ACCEL, RENDER_PRECISION, RENDER_MIS, RENDER_BATCH, RENDER_COMPAT
+    RENDER_ACCEL, RENDER_PRECISION, RENDER_MIS, RENDER_BATCH, RENDER_COMPAT, RENDER_TEXTURE_MEMORY
 };
 enum {
     STUDY_TITLE, STUDY_SAMPLERS, STUDY_SPP, STUDY_DEPTH, STUDY_PRECISION, STUDY_ACCEL, STUDY_ROULETTE, STUDY_COMPAT, STUDY_SEEDS, STUDY_RUNS, STUDY_SEED,
@@ -100,6 +105,13 @@ enum { DISK_CENTER = 2, DISK_NORMAL, DISK_RADIUS };
 enum { BOX_CORNER = 2, BOX_SIZE, BOX_MIN, BOX_MAX };
 enum { TRIANGLE_A = 2, TRIANGLE_B, TRIANGLE_C, TRIANGLE_NORMALS, TRIANGLE_UV };
 enum { MESH_VERTICES = 2, MESH_FACES, MESH_NORMALS, MESH_UV };
+/* The first two settings of every texture. */
+enum { TEXTURE_SCALE, TEXTURE_OFFSET };
+enum { IMAGE_FILE = 2, IMAGE_WRAP, IMAGE_FILTER, IMAGE_COLOUR, IMAGE_CHANNEL };
+enum { CHECKER_EVEN = 2, CHECKER_ODD, CHECKER_FILTER };
+enum { GRADIENT_FROM = 2, GRADIENT_TO, GRADIENT_STOPS, GRADIENT_ALONG, GRADIENT_WRAP };
+/* What every material takes beside its plugin's parameters. */
+enum { SURFACE_EMISSION, SURFACE_EMISSION_SIDES, SURFACE_NORMAL_MAP, SURFACE_NORMAL_STRENGTH, SURFACE_BUMP, SURFACE_BUMP_HEIGHT, SURFACE_COUNT };
 /* The first setting of every light. */
 enum { LIGHT_TRANSFORM };
 enum { POINT_POSITION = 1, POINT_INTENSITY, POINT_POWER };
@@ -110,6 +122,9 @@ enum { STEP_TRANSLATE, STEP_ROTATE, STEP_SCALE, STEP_MATRIX, STEP_LOOKAT };
 
 #define MCR_SETTINGS_LIMIT 24u /* no table is longer */
 #define MCR_EXTENT_LIMIT 1e100 /* magnitude of coordinates and lengths in the world, so that products of three do not overflow */
+#define MCR_TEXTURE_SCALE_LEAST 1e-9 /* magnitudes of a texture's scale; offsets are at most the larger one */
+#define MCR_TEXTURE_SCALE_MOST 1e9
+#define MCR_TEXTURE_MEMORY 1024 /* MiB, by default */
 #define MCR_FILM_LIMIT 65536u
 #define MCR_FILM_BYTES_PER_PIXEL 56u
 #define MCR_FILM_CHANNEL_BYTES_PER_PIXEL 72u /* more, where it keeps the channels' variances */

@@ -64,7 +64,7 @@ static void mistakes(void)
             "    3 | sphere {\n"
             "      |        ^\n"
             "in file included from bad.scn:2:11:\n"
-            "sub/bad.scn:2:1: error: unknown word 'foo' at the top level, expected camera, film, render, study, material, group, transform, plane, sphere, "
+            "sub/bad.scn:2:1: error: unknown word 'foo' at the top level, expected camera, film, render, study, material, light, texture, group, transform, plane, sphere, "
             "quad, disk, box, triangle, mesh, let or include\n"
             "    2 | foo\n"
             "      | ^~~\n"

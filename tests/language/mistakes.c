@@ -3,7 +3,7 @@
 #include "help.h"
 
 #define BYTES(text) text, sizeof text - 1
-#define TOP "camera, film, render, study, material, group, transform, plane, sphere, quad, disk, box, triangle, mesh, let or include"
+#define TOP "camera, film, render, study, material, light, texture, group, transform, plane, sphere, quad, disk, box, triangle, mesh, let or include"
 
 /* Messages without their excerpts (tests/base/diag.c has those) and without the file's name. */
 static const struct {

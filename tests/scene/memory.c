@@ -6,6 +6,7 @@ static const char text[] = "mcrender 1\n" CAMERA MATERIALS
                            "sphere { center (0, 0, 5) radius 1 material lamp }\n"
                            "mesh { vertices ((0, 0, 5), (1, 0, 5), (0, 1, 5)) faces ((0, 1, 2)) normals ((0, 0, 1), (0, 0, 1), (0, 0, 1))\n"
                            "uv ((0, 0), (1, 0), (0, 1)) material m }\n"
+                           "texture a checker { even 1 odd 0 }\ntexture b gradient { stops ((0, 1), (1, 0)) }\n"
                            "render { sampler stratified(mixture(cosine 1, light 1)) spp 16 }\n";
 
 /* 1 built, 0 refused with an error, -1 refused without one. */

@@ -42,7 +42,7 @@ int main(void)
         const char *why = judge(word);
         ok(!why, "the table of %s%s%s: %s", word->word, word->kind ? " " : "", word->kind ? word->kind : "", why ? why : "good");
         ok(form && (word->kind || word->role == MCR_BLOCK_MATERIAL) == form->has_kind &&
-           (word->role == MCR_BLOCK_MATERIAL || word->role == MCR_BLOCK_LIGHT) == form->has_name,
+           (word->role == MCR_BLOCK_MATERIAL || word->role == MCR_BLOCK_TEXTURE || word->role == MCR_BLOCK_LIGHT) == form->has_name,
            "the parser knows it, with the same parts");
     }
     for (uint32_t i = 0; i < MCR_FILTER_COUNT; i++)
@@ -51,7 +51,8 @@ int main(void)
         ok(!judge(&mcr_tone_words[i]) && strcmp(mcr_tone_words[i].word, mcr_tone_name[i]) == 0, "the arguments of tone %s", mcr_tone_words[i].word);
     ok(!judge(&mcr_roulette_word), "the arguments of roulette on");
     for (size_t i = 0; i < count; i++) {
-        int known = strcmp(list[i], "let") == 0 || strcmp(list[i], "include") == 0 || mcr_scene_block(list[i], "perspective") || mcr_scene_block(list[i], "point");
+        int known = strcmp(list[i], "let") == 0 || strcmp(list[i], "include") == 0 || mcr_scene_block(list[i], "perspective") || mcr_scene_block(list[i], "checker") ||
+                    mcr_scene_block(list[i], "point");
         ok(known, "the parser's '%s' is known here", list[i]);
     }
     return tap_done();
