@@ -19,20 +19,6 @@ static const struct mcr_sky_functions *sky_of(uint32_t isa)
 #endif
 }
 
-/* Luminance of what all finite emitters radiate, in units of render space. */
-static double finite_power(const struct mcr_core *core)
-{
-    const struct mcr_emitters *all = core->emitters;
-    double sum = 0;
-    for (uint32_t e = 0; e < all->count; e++) {
-        const struct mcr_emitter *emitter = &all->emitter[e];
-        const double *radiance = core->scene->material[emitter->material].traits.radiance;
-        int both = emitter->sides == (MCR_MATERIAL_EMITS_FRONT | MCR_MATERIAL_EMITS_BACK);
-        sum += MCR_PI * mcr_luminance(radiance[0], radiance[1], radiance[2]) * emitter->area * (both ? 2 : 1);
-    }
-    return sum;
-}
-
 int mcr_lights_init(struct mcr_core *core, struct mcr_arena *arena)
 {
     core->sky_emitter = -1;
@@ -47,7 +33,7 @@ int mcr_lights_init(struct mcr_core *core, struct mcr_arena *arena)
         return 0;
     }
     /* Through a disk of radius 1: render space reaches from the camera to between 1/2 and 1. */
-    double sky = MCR_PI * core->sky->power, finite = finite_power(core);
+    double sky = MCR_PI * core->sky->power, finite = mcr_emitters_power(core->emitters);
     core->sky_share = mcr_clamp(sky / (sky + finite), LEAST_SHARE, 1 - LEAST_SHARE);
     return 0;
 }
