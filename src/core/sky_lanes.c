@@ -297,12 +297,13 @@ static void draw_sun(const struct mcr_sky_sun *sun, double to, uint32_t n, const
     MCR_LANES
     for (uint32_t i = 0; i < n; i++) {
         double down = u[i] * versine, radius = sqrt(down * (2 - down)), sine, cosine, wx, wy, wz;
+        double was_x = x[i], was_y = y[i], was_z = z[i]; /* read in any case: a select, not a store under a condition */
         int chosen = (choice[i] >= from) & (choice[i] < to);
         mcr_sincos_turns(v[i], &sine, &cosine);
         mcr_to_world(sx, sy, sz, radius * cosine, radius * sine, 1 - down, &wx, &wy, &wz);
-        x[i] = chosen ? wx : x[i];
-        y[i] = chosen ? wy : y[i];
-        z[i] = chosen ? wz : z[i];
+        x[i] = chosen ? wx : was_x;
+        y[i] = chosen ? wy : was_y;
+        z[i] = chosen ? wz : was_z;
     }
 }
 
