@@ -51,27 +51,27 @@ static void get_row(const struct rows *rows, uint32_t y, double *restrict out)
 
 /*
  * Where texel k of `less` lies over those of `more` (at least as many): texel j of these covers [j less, (j + 1) less) and k covers
- * [k more, (k + 1) more), in whole numbers. Returns the first and last, with the shares of both; those in between count as `inner`.
+ * [k more, (k + 1) more), in whole numbers. Returns the first and last; the share of the last, of those in
+ * between, and what is missing from 1 is the first one's.
  */
 struct cover {
     uint32_t first, last;
-    double first_share, inner, last_share; /* sum 1 */
+    double inner, last_share;
 };
 
 static struct cover cover_of(uint32_t k, uint32_t less, uint32_t more)
 {
     uint64_t begin = (uint64_t)k * more, end = begin + more;
-    struct cover cover = { (uint32_t)(begin / less), (uint32_t)((end - 1) / less), 1, (double)less / more, 0 };
-    if (cover.last > cover.first) {
-        cover.first_share = (double)((uint64_t)(cover.first + 1) * less - begin) / more;
+    struct cover cover = { (uint32_t)(begin / less), (uint32_t)((end - 1) / less), (double)less / more, 0 };
+    if (cover.last > cover.first)
         cover.last_share = (double)(end - (uint64_t)cover.last * less) / more;
-    }
     return cover;
 }
 
+/* Of any but the first. */
 static double share(const struct cover *cover, uint32_t j)
 {
-    return j == cover->first ? cover->first_share : j == cover->last ? cover->last_share : cover->inner;
+    return j == cover->last ? cover->last_share : cover->inner;
 }
 
 /* Means along a row: as the first value plus weighted differences, so that what is constant stays so to the last bit. */

@@ -85,7 +85,7 @@ static void filters(void)
     t = load(&world, "eight.pfm", "", "");
     ok(is(look(t, 0.375, 0.25, -1).r, 1, 0) && is(look(t, 0.625, 0.75, -1).b, 12, 0), "bilinear: exact at the centres");
     ok(is(look(t, 0.5, 0.25, -1).r, 1.5, 0) && is(look(t, 0.4375, 0.5, -1).r, 6.25, 0), "and in between, by hand");
-    ok(is(look(t, 0, 0.25, -1).r, 1.5, 0) && is(look(t, 1, 0.25, -1).r, 1.5, 0) && is(look(t, 0.375, 0, -1).r, 6, 0), "repeat: over the border");
+    ok(is(look(t, 0, 0.25, -1).r, 1.5, 0) && is(look(t, 1, 0.25, -1).r, 1.5, 0) && is(look(t, 0.9375, 0.25, -1).r, 2.25, 0) && is(look(t, 0.375, 0, -1).r, 6, 0), "repeat: over the border");
     ok(is(look(t, 1e9 + 0.375, -1e9 + 0.25, -1).r, 1, 1e-6) && is(look(t, -0.625, -0.75, -1).r, 1, 0), "far away and on the other side");
     int finite = 1;
     const double odd[] = { INFINITY, -INFINITY, NAN, 1e308, -1e308, 1e19, -1e-320, 0x1p62, 0x1p53 };
