@@ -102,6 +102,23 @@ for kind in sphere triangle; do
 done
 
 echo
+echo "Many emitters: a room under a ceiling of N panels, nee, one thread, 64 x 64, 16 spp; processor time of a sample, the best of 3"
+printf '  %-8s %10s %14s\n' N microseconds 'over the last'
+last=
+for side in 4 5 10 32 100 316; do
+    { sed -n '/^quad/p; /^material/p; /^camera/,/^}/p' "$box" | sed '1i mcrender 1\nlet room = 555' | sed '/lamp }$/d'
+      awk -v n=$side 'BEGIN { s = 500 / n; for (i = 0; i < n * n; i++)
+          printf "quad { corner (%.9g, 554, %.9g) u (%.9g, 0, 0) v (0, 0, %.9g) material lamp }\n", 25 + s * int(i / n), 25 + s * (i % n), s * 0.9, s * 0.9 }'
+    } >"$TMPDIR/panels.scn"
+    best=$(for run in 1 2 3; do
+        render "$TMPDIR/panels.scn" --sampler nee --depth 4 --threads 1 --size 64x64 --spp 16
+        compute '%.4f\n' "1e6 * $(value render_cpu) / (64 * 64 * 16)"
+    done | sort -g | head -n 1)
+    printf '  %-8s %10.2f %14.2f\n' $((side * side)) "$best" "$(compute %.3f "$best / ${last:-$best}")"
+    last=$best
+done
+
+echo
 for i in $(seq 20); do
     start=$EPOCHREALTIME
     "$MCRENDER" check --quiet "$box"
