@@ -1,26 +1,19 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * conductor: a metal of GGX microfacets, on both sides. f cos = F D G2 / (4 cos_o): D of Trowbridge and Reitz, "Average irregularity representation of
- * a rough surface for ray reflection" (1975), as in Walter et al., "Microfacet models for refraction through rough surfaces" (2007); G2 is Smith's
- * shadowing and masking correlated by height, Heitz, "Understanding the masking-shadowing function in microfacet-based BRDFs" (2014), section 6.
- * Light that meets more than one microfacet is lost: a rough white metal is a few ten per cent too dark.
+ * conductor: a metal of GGX microfacets, on both sides: f cos = F D G2 / (4 cos_o), as <mcrender/microfacet.h> tells.
  *
- * Directions are drawn by the normals that the outgoing direction sees, as a spherical cap: Dupuy and Benyoub, "Sampling visible GGX normals with
- * spherical caps" (2023). Of those, a share is reflected below the horizon and not drawn: there the density integrates to less than 1.
+ * Light that meets more than one microfacet is lost: a rough white metal is a few ten per cent too dark. `compensation` gives it back as a diffuse lobe,
+ * (1 - E(o)) (1 - E(i)) / (pi (1 - <E>)) F_ms, Kulla and Conty, "Revisiting physically based shading at Imageworks" (2017), with
+ * F_ms = <F>^2 <E> / (1 - <F> (1 - <E>)); E is the directional albedo of GGX without Fresnel's part and < > a mean weighted by the cosine. E is that of
+ * the widths' root mean square where these differ.
  *
- * All is written in the normal's slope, so that nothing cancels or overflows down to LEAST, which is a lobe of 1e-7 rad: unit vectors in doubles tell
- * such a slope to about 1e-9 of it. Below, the surface is a mirror and no density serves it.
+ * Of the directions drawn by visible normals, a share is reflected below the horizon and not drawn: there the density integrates to less than 1.
  */
-#include <math.h>
-#include <mcrender/material.h>
-#include <mcrender/sampler.h>
-
-#define LEAST 1e-7     /* the smallest alpha: the host keeps to the range */
-#define HORIZON 1e-100 /* cosines below count as 0, so that no product of two underflows */
-#define PI 3.1415926535897932
+#include <mcrender/math.h>
+#include <mcrender/microfacet.h>
 
 /* Parameters, in the order of the table. */
-enum { METAL, REFLECTANCE, ETA, K, ROUGHNESS, PARAMETERS };
+enum { METAL, REFLECTANCE, ETA, K, ROUGHNESS, ANISOTROPY, ROTATION, COMPENSATION, PARAMETERS };
 #define CHANNEL(parameter) (3 * (parameter))
 
 /* The words of `metal`. */
@@ -80,8 +73,33 @@ static const struct mcr_parameter parameters[PARAMETERS] = {
                    .unit = "",
                    .summary = "The alpha of GGX, the width of the slopes' distribution: not the square root of it that some programs ask for.",
                    .fallback = {0.2},
-                   .min = LEAST,
+                   .min = MCR_GGX_LEAST,
                    .max = 1},
+    [ANISOTROPY] = {.size = sizeof(struct mcr_parameter),
+                    .type = MCR_TYPE_NUMBER,
+                    .flags = MCR_PARAMETER_VARYING,
+                    .name = "anisotropy",
+                    .unit = "",
+                    .summary = "a > 0: along growing u the roughness is 1 - a times as much; a < 0: across u it is 1 + a times as much.",
+                    .fallback = {0},
+                    .min = -1,
+                    .max = 1},
+    [ROTATION] = {.size = sizeof(struct mcr_parameter),
+                  .type = MCR_TYPE_NUMBER,
+                  .flags = MCR_PARAMETER_VARYING,
+                  .name = "rotation",
+                  .unit = "degrees",
+                  .summary = "Turns the direction that `anisotropy` means by u around the normal, counterclockwise seen from outside.",
+                  .fallback = {0},
+                  .min = -360,
+                  .max = 360},
+    [COMPENSATION] = {.size = sizeof(struct mcr_parameter),
+                      .type = MCR_TYPE_CHOICE,
+                      .name = "compensation",
+                      .unit = "",
+                      .choices = "none|kulla-conty",
+                      .summary = "Whether the light that meets several facets is lost or comes back in a diffuse lobe.",
+                      .fallback = {0}},
 };
 
 static int32_t refuse(const struct mcr_host *host, struct mcr_context *context, const char *text)
@@ -112,43 +130,88 @@ static int32_t traits(const struct mcr_host *host, struct mcr_context *context, 
     return MCR_OK;
 }
 
-/* Doubles to one array of scratch: a multiple of 8 keeps every array aligned and padded. */
-static uint64_t padded(uint32_t n)
-{
-    return ((uint64_t)n + 7) / 8 * 8;
-}
+/* Arrays of scratch, of mcr_padded(n) doubles each. TANGENT and TURNED are 3. */
+enum { ALPHA, AX, AY, TANGENT, TURNED = TANGENT + 3, DEGREES = TURNED + 3, LEANING, SHAPE, COSINE, ETA_LANES, K_LANES, AGAIN, ARRAYS };
 
 static uint64_t scratch_bytes(const void *instance, uint32_t n)
 {
     (void)instance;
-    return 4 * padded(n) * sizeof(double);
+    return ARRAYS * mcr_padded(n) * sizeof(double);
+}
+
+/* ---- the surface ---- */
+
+/* Widths and tangents of the lanes. */
+struct surface {
+    const double *alpha, *ax, *ay, *t[3];
+};
+
+static void widths_lanes(uint32_t n, const double *alpha, const double *anisotropy, double *restrict ax, double *restrict ay)
+{
+    for (uint32_t i = 0; i < n; i++) {
+        double a = anisotropy[i], along = alpha[i] * (1 - (a > 0 ? a : 0)), across = alpha[i] * (1 + (a < 0 ? a : 0));
+        ax[i] = along > MCR_GGX_LEAST ? along : MCR_GGX_LEAST;
+        ay[i] = across > MCR_GGX_LEAST ? across : MCR_GGX_LEAST;
+    }
+}
+
+static void mean_lanes(uint32_t n, const double *ax, const double *ay, double *restrict mean)
+{
+    for (uint32_t i = 0; i < n; i++)
+        mean[i] = ax[i] == ay[i] ? ax[i] : sqrt(0.5 * (ax[i] * ax[i] + ay[i] * ay[i]));
+}
+
+/* t cos + (n x t) sin; t to the bit where there is no anisotropy, so that a lane's bits do not depend on its neighbours. */
+static void turn_lanes(const struct mcr_points *at, const double *const t[3], const double *degrees, const double *anisotropy, double *restrict x,
+                       double *restrict y, double *restrict z)
+{
+    const double *nx = at->nx, *ny = at->ny, *nz = at->nz, *tx = t[0], *ty = t[1], *tz = t[2];
+
+    for (uint32_t i = 0; i < at->n; i++) {
+        struct mcr_frame f = mcr_frame(mcr_vector(nx[i], ny[i], nz[i]), mcr_vector(tx[i], ty[i], tz[i]));
+        double angle = anisotropy[i] != 0 ? degrees[i] : 0, c = mcr_cos_degrees(angle), s = mcr_sin_degrees(angle);
+        x[i] = f.t.x * c + f.b.x * s;
+        y[i] = f.t.y * c + f.b.y * s;
+        z[i] = f.t.z * c + f.b.z * s;
+    }
+}
+
+static int differs(const struct mcr_inputs *inputs, uint32_t channel)
+{
+    return inputs->stride[channel] || inputs->channel[channel][0] != 0;
+}
+
+/* What is isotropic needs no particular tangent. */
+static void surface_lanes(const struct mcr_points *at, const struct mcr_inputs *inputs, double *room, struct surface *s)
+{
+    uint64_t stride = mcr_padded(at->n);
+    int leans = differs(inputs, CHANNEL(ANISOTROPY));
+    const double *anisotropy;
+
+    s->alpha = s->ax = s->ay = mcr_input_lanes(inputs, CHANNEL(ROUGHNESS), at->n, room + ALPHA * stride);
+    mcr_tangent_lanes(at, room + TANGENT * stride, s->t);
+    if (!leans)
+        return;
+    anisotropy = mcr_input_lanes(inputs, CHANNEL(ANISOTROPY), at->n, room + LEANING * stride);
+    widths_lanes(at->n, s->alpha, anisotropy, room + AX * stride, room + AY * stride);
+    s->ax = room + AX * stride, s->ay = room + AY * stride;
+    if (differs(inputs, CHANNEL(ROTATION))) {
+        double *turned = room + TURNED * stride;
+        const double *degrees = mcr_input_lanes(inputs, CHANNEL(ROTATION), at->n, room + DEGREES * stride);
+        turn_lanes(at, s->t, degrees, anisotropy, turned, turned + stride, turned + 2 * stride);
+        s->t[0] = turned, s->t[1] = turned + stride, s->t[2] = turned + 2 * stride;
+    }
+    mean_lanes(at->n, s->ax, s->ay, room + DEGREES * stride);
+    s->alpha = room + DEGREES * stride;
+}
+
+/* 1 where the material gives back what is lost. */
+static int compensates(const struct mcr_inputs *inputs)
+{
+    return differs(inputs, CHANNEL(COMPENSATION));
 }
 
 /* ---- Fresnel ---- */
-
-/*
- * Reflectance of unpolarised light at the cosine c in (0, 1] for the index eta + i k. With eta^2 - k^2 - sin^2 + 2i eta k = (a + i b)^2: parallel and
- * perpendicular part as quotients of squares, which do not cancel; of a^2 and b^2 the smaller comes from the product a b = eta k.
- */
-MCR_INLINE double fresnel_index(double c, double eta, double k)
-{
-    double s2 = (1 - c) * (1 + c), t = eta * eta - k * k - s2, ab = eta * k;
-    double modulus = sqrt(t * t + 4 * ab * ab), larger = 0.5 * (modulus + fabs(t)), smaller = ab * ab / (larger > 0 ? larger : 1);
-    double a2 = t > 0 ? larger : smaller, b2 = t > 0 ? smaller : larger, a = sqrt(a2);
-    double across = ((a - c) * (a - c) + b2) / ((a + c) * (a + c) + b2);
-    double minus = a * c - s2, plus = a * c + s2, below = plus * plus + b2 * c * c;
-    double ratio = (minus * minus + b2 * c * c) / (below > 0 ? below : 1);
-
-    ratio = below > 0 ? ratio : 1; /* 0/0 for eta = k = 0 at c = 1 alone: a perfect mirror */
-    return 0.5 * (across + across * ratio);
-}
-
-/* Schlick, "An inexpensive BRDF model for physically-based rendering" (1994). */
-MCR_INLINE double fresnel_schlick(double c, double reflectance)
-{
-    double m = 1 - c, m2 = m * m;
-    return reflectance + (1 - reflectance) * (m2 * m2 * m);
-}
 
 /* out = shape * F(cosine). The index of lane i is at i * stride; a negative k says that eta holds a reflectance. */
 static void fresnel_lanes(uint32_t n, const double *restrict shape, const double *restrict cosine, const double *restrict eta,
@@ -156,15 +219,15 @@ static void fresnel_lanes(uint32_t n, const double *restrict shape, const double
 {
     if (stride)
         for (uint32_t i = 0; i < n; i++) {
-            double by_index = fresnel_index(cosine[i], eta[i], k[i]), by_colour = fresnel_schlick(cosine[i], eta[i]);
+            double by_index = mcr_fresnel_conductor(cosine[i], eta[i], k[i]), by_colour = mcr_fresnel_schlick(cosine[i], eta[i]);
             out[i] = shape[i] * (k[i] < 0 ? by_colour : by_index);
         }
     else if (k[0] < 0)
         for (uint32_t i = 0; i < n; i++)
-            out[i] = shape[i] * fresnel_schlick(cosine[i], eta[0]);
+            out[i] = shape[i] * mcr_fresnel_schlick(cosine[i], eta[0]);
     else
         for (uint32_t i = 0; i < n; i++)
-            out[i] = shape[i] * fresnel_index(cosine[i], eta[0], k[0]);
+            out[i] = shape[i] * mcr_fresnel_conductor(cosine[i], eta[0], k[0]);
 }
 
 /* The index of channel c in n lanes, as fresnel_lanes wants it. */
@@ -185,179 +248,199 @@ static void index_lanes(uint32_t n, const struct mcr_inputs *inputs, uint32_t c,
     }
 }
 
-/* ---- Microfacets ---- */
-
-struct facet {
-    double out, in; /* cosines of both directions to the shading normal */
-    double d;       /* D of the half vector, 1/sr */
-    double cosine;  /* between the half vector and either direction */
-    int above;      /* whether both directions are above the horizon */
-};
-
-/*
- * With h = o + w, the part of it along the normal and the square of the part across: the slope of the microfacet that reflects o to w is across / along.
- * Symmetric in o and w to the last bit.
- */
-MCR_INLINE struct facet facet_of(double alpha, double nx, double ny, double nz, double ox, double oy, double oz, double x, double y, double z)
+/* The mean of F over the hemisphere, weighted by the cosine: of Schlick's formula (20 r + 1) / 21, else by Gauss and Legendre's rule of 8 points. */
+static void mean_fresnel_lanes(uint32_t n, const double *eta, const double *k, double *restrict mean)
 {
-    struct facet f;
-    double out = nx * ox + ny * oy + nz * oz, in = nx * x + ny * y + nz * z, along = out + in;
-    double ax = (ox + x) - along * nx, ay = (oy + y) - along * ny, az = (oz + z) - along * nz;
-    double across2 = ax * ax + ay * ay + az * az, along2 = along * along, length2 = along2 + across2;
-    int above = (out > HORIZON) & (in > HORIZON);
-    double inverse = 1 / (above ? length2 : 1.0), q = (alpha * alpha * along2 + across2) * inverse, half = 0.5 * sqrt(length2);
+    static const double node[8] = {0.01985507175123191, 0.1016667612931866, 0.2372337950418355, 0.4082826787521751, 0.5917173212478248, 0.7627662049581645, 0.8983332387068134, 0.9801449282487681};
+    static const double weight[8] = {0.002009899851317613, 0.02260875954590313, 0.07442181813145635, 0.1480775066176912, 0.2146062767606707, 0.2392848277464308, 0.1997722749074713, 0.09921863643905911};
 
-    f.out = out;
-    f.in = in;
-    f.d = alpha * alpha / (PI * q * q);
-    half = half < 1 ? half : 1;
-    f.cosine = half > HORIZON ? half : HORIZON; /* both selects do nothing but at opposite and equal directions */
-    f.above = above;
-    return f;
+    for (uint32_t i = 0; i < n; i++) {
+        double sum = 0, e = eta[i], absorbs = k[i];
+        for (uint32_t j = 0; j < 8; j++)
+            sum += weight[j] * mcr_fresnel_conductor(node[j], e, absorbs);
+        mean[i] = absorbs < 0 ? (20 * e + 1) / 21 : sum;
+    }
 }
 
-/* sqrt(cos^2 + alpha^2 sin^2): in Smith's terms, cos (1 + 2 Lambda). */
-MCR_INLINE double spread(double alpha, double cosine)
+/* out += again * F_ms */
+static void again_lanes(uint32_t n, const double *alpha, const double *again, const double *mean, uint32_t stride, double *restrict out)
 {
-    double a2 = alpha * alpha;
-    return sqrt(a2 + (1 - a2) * cosine * cosine);
+    for (uint32_t i = 0; i < n; i++) {
+        double f = mean[i * stride], kept = 1 - mcr_ggx_mean_lost(alpha[i]);
+        out[i] += again[i] * (f * f * kept / (1 - f * (1 - kept)));
+    }
 }
 
-/* f cos without Fresnel, which is D G2 / (4 cos_o), and the cosine for Fresnel; 0 below either horizon. */
-MCR_INLINE void shape_lane(double alpha, double nx, double ny, double nz, double gx, double gy, double gz, double ox, double oy, double oz, double x,
-                           double y, double z, double *shape, double *cosine)
-{
-    struct facet f = facet_of(alpha, nx, ny, nz, ox, oy, oz, x, y, z);
-    double below = f.in * spread(alpha, f.out) + f.out * spread(alpha, f.in), geometric = gx * x + gy * y + gz * z;
-    double value = f.d * f.in / (2 * below);
+/* ---- evaluate ---- */
 
-    value = f.above ? value : 0;
-    *shape = geometric > 0 ? value : 0;
-    *cosine = f.cosine;
-}
-
-static void shape_lanes(const struct mcr_points *at, const double *restrict x, const double *restrict y, const double *restrict z,
-                        const double *restrict alpha, uint32_t stride, double *restrict shape, double *restrict cosine)
+/* f cos without Fresnel's part, and the cosine for that; 0 below either horizon. */
+static void shape_lanes(const struct mcr_points *at, const struct surface *s, const double *restrict x, const double *restrict y,
+                        const double *restrict z, double *restrict shape, double *restrict cosine)
 {
     const double *nx = at->nx, *ny = at->ny, *nz = at->nz, *gx = at->gx, *gy = at->gy, *gz = at->gz, *ox = at->ox, *oy = at->oy, *oz = at->oz;
-    const double same = alpha[0];
+    const double *tx = s->t[0], *ty = s->t[1], *tz = s->t[2], *ax = s->ax, *ay = s->ay;
 
-    if (stride)
-        for (uint32_t i = 0; i < at->n; i++)
-            shape_lane(alpha[i], nx[i], ny[i], nz[i], gx[i], gy[i], gz[i], ox[i], oy[i], oz[i], x[i], y[i], z[i], &shape[i], &cosine[i]);
-    else
-        for (uint32_t i = 0; i < at->n; i++)
-            shape_lane(same, nx[i], ny[i], nz[i], gx[i], gy[i], gz[i], ox[i], oy[i], oz[i], x[i], y[i], z[i], &shape[i], &cosine[i]);
+    for (uint32_t i = 0; i < at->n; i++) {
+        struct mcr_frame f = mcr_frame(mcr_vector(nx[i], ny[i], nz[i]), mcr_vector(tx[i], ty[i], tz[i]));
+        struct mcr_vector o = mcr_to_frame(f, mcr_vector(ox[i], oy[i], oz[i])), w = mcr_to_frame(f, mcr_vector(x[i], y[i], z[i]));
+        struct mcr_ggx g = mcr_ggx_reflect(ax[i], ay[i], o, w);
+        double above = gx[i] * x[i] + gy[i] * y[i] + gz[i] * z[i];
+
+        shape[i] = above > 0 ? g.value : 0;
+        cosine[i] = g.cosine;
+    }
+}
+
+/* The diffuse lobe of the light that meets several facets, without its colour; 0 where it is not asked for. */
+static void lost_lanes(const struct mcr_points *at, const double *restrict x, const double *restrict y, const double *restrict z, const double *alpha,
+                       const double *asked, uint32_t stride, double *restrict again)
+{
+    const double *nx = at->nx, *ny = at->ny, *nz = at->nz, *gx = at->gx, *gy = at->gy, *gz = at->gz, *ox = at->ox, *oy = at->oy, *oz = at->oz;
+
+    for (uint32_t i = 0; i < at->n; i++) {
+        double out = nx[i] * ox[i] + ny[i] * oy[i] + nz[i] * oz[i], in = nx[i] * x[i] + ny[i] * y[i] + nz[i] * z[i];
+        double above = gx[i] * x[i] + gy[i] * y[i] + gz[i] * z[i];
+        double f = in * MCR_PER_PI * mcr_ggx_lost(alpha[i], out) * mcr_ggx_lost(alpha[i], in) / mcr_ggx_mean_lost(alpha[i]);
+        int seen = (out > MCR_GGX_HORIZON) & (in > MCR_GGX_HORIZON) & (above > 0) & (asked[i * stride] != 0);
+
+        again[i] = seen ? f : 0;
+    }
 }
 
 static int32_t evaluate(const struct mcr_host *host, struct mcr_context *context, const void *instance, const struct mcr_inputs *inputs,
                         const struct mcr_points *at, const struct mcr_directions *toward, const struct mcr_colours *out)
 {
-    double *shape = host->scratch(host, context), *cosine = shape + padded(at->n), *eta = cosine + padded(at->n), *k = eta + padded(at->n);
-    double *channel[3] = {out->r, out->g, out->b};
+    double *room = host->scratch(host, context), *channel[3] = {out->r, out->g, out->b};
+    const uint64_t stride = mcr_padded(at->n);
+    double *shape = room + SHAPE * stride, *cosine = room + COSINE * stride, *eta = room + ETA_LANES * stride, *k = room + K_LANES * stride;
+    double *again = room + AGAIN * stride;
     const uint32_t *s = inputs->stride;
+    struct surface surface;
 
     (void)instance;
-    shape_lanes(at, toward->x, toward->y, toward->z, inputs->channel[CHANNEL(ROUGHNESS)], s[CHANNEL(ROUGHNESS)], shape, cosine);
+    surface_lanes(at, inputs, room, &surface);
+    shape_lanes(at, &surface, toward->x, toward->y, toward->z, shape, cosine);
+    if (compensates(inputs))
+        lost_lanes(at, toward->x, toward->y, toward->z, surface.alpha, inputs->channel[CHANNEL(COMPENSATION)], s[CHANNEL(COMPENSATION)], again);
     for (uint32_t c = 0; c < 3; c++) {
         uint32_t varies = s[CHANNEL(METAL)] | s[CHANNEL(REFLECTANCE) + c] | s[CHANNEL(ETA) + c] | s[CHANNEL(K) + c];
 
         index_lanes(varies ? at->n : 1, inputs, c, eta, k);
         fresnel_lanes(at->n, shape, cosine, eta, k, varies, channel[c]);
+        if (compensates(inputs)) {
+            double *mean = room + LEANING * stride; /* no longer needed */
+            mean_fresnel_lanes(varies ? at->n : 1, eta, k, mean);
+            again_lanes(at->n, surface.alpha, again, mean, varies, channel[c]);
+        }
+    }
+    return MCR_OK;
+}
+
+/* F's mean, as if all light met one facet: for feature layers. */
+static int32_t albedo(const struct mcr_host *host, struct mcr_context *context, const void *instance, const struct mcr_inputs *inputs,
+                      const struct mcr_points *at, const struct mcr_colours *out)
+{
+    double *room = host->scratch(host, context), *channel[3] = {out->r, out->g, out->b};
+    double *eta = room, *k = room + mcr_padded(at->n);
+
+    (void)instance;
+    for (uint32_t c = 0; c < 3; c++) {
+        index_lanes(at->n, inputs, c, eta, k);
+        mean_fresnel_lanes(at->n, eta, k, channel[c]);
     }
     return MCR_OK;
 }
 
 /* ---- Sampling ---- */
 
-/* G1(o) D / (4 cos_o), the density of visible normals over that of reflected directions. */
-MCR_INLINE double density_lane(double alpha, double nx, double ny, double nz, double ox, double oy, double oz, double x, double y, double z)
-{
-    struct facet f = facet_of(alpha, nx, ny, nz, ox, oy, oz, x, y, z);
-    double value = f.d / (2 * (f.out + spread(alpha, f.out)));
-
-    return f.above ? value : 0;
-}
-
-static void density_lanes(const struct mcr_points *at, const double *restrict x, const double *restrict y, const double *restrict z,
-                          const double *restrict alpha, uint32_t stride, double *restrict density)
+/* The chance that a direction is drawn in proportion to the cosine: what is lost, where it is given back. */
+static void share_lanes(const struct mcr_points *at, const double *alpha, const double *asked, uint32_t stride, double *restrict share)
 {
     const double *nx = at->nx, *ny = at->ny, *nz = at->nz, *ox = at->ox, *oy = at->oy, *oz = at->oz;
-    const double same = alpha[0];
 
-    if (stride)
-        for (uint32_t i = 0; i < at->n; i++)
-            density[i] = density_lane(alpha[i], nx[i], ny[i], nz[i], ox[i], oy[i], oz[i], x[i], y[i], z[i]);
+    for (uint32_t i = 0; i < at->n; i++) {
+        double lost = mcr_ggx_lost(alpha[i], nx[i] * ox[i] + ny[i] * oy[i] + nz[i] * oz[i]);
+        share[i] = asked[i * stride] != 0 ? lost : 0;
+    }
+}
+
+static const double *shares(const struct mcr_points *at, const struct mcr_inputs *inputs, const struct surface *s, double *room)
+{
+    if (compensates(inputs))
+        share_lanes(at, s->alpha, inputs->channel[CHANNEL(COMPENSATION)], inputs->stride[CHANNEL(COMPENSATION)], room);
     else
-        for (uint32_t i = 0; i < at->n; i++)
-            density[i] = density_lane(same, nx[i], ny[i], nz[i], ox[i], oy[i], oz[i], x[i], y[i], z[i]);
+        mcr_fill_lanes(at->n, 0, room);
+    return room;
 }
 
-/*
- * In a frame with the normal as z: squeezed by alpha, the surface's normals are those of a hemisphere and o becomes the unit vector w. A point of the
- * spherical cap z > -w.z, uniform in area, plus w is a visible normal of the hemisphere; stretched back, one of the surface. The cap's point at a disk's
- * radius r is at height 1 - r^2 (1 + w.z), so that the sum has the height (1 + w.z)(1 - r^2), which is exact at both ends.
- */
-MCR_INLINE void reflect_lane(double alpha, double ox, double oy, double oz, double u, double v, double *x, double *y, double *z)
-{
-    double qx = alpha * ox, qy = alpha * oy, length = 1 / sqrt(qx * qx + qy * qy + oz * oz);
-    double wx = qx * length, wy = qy * length, wz = oz * length < 1 ? oz * length : 1;
-    double px, py, rest = mcr_disk_from_square(u, v, &px, &py), p = 1 + wz, s = sqrt(p * (2 - (1 - rest) * p));
-    double mx = alpha * (px * s + wx), my = alpha * (py * s + wy), mz = p * rest;
-    double m2 = mx * mx + my * my + mz * mz, twice = 2 * (ox * mx + oy * my + oz * mz) / (m2 > 0 ? m2 : 1);
-
-    *x = twice * mx - ox;
-    *y = twice * my - oy;
-    *z = twice * mz - oz;
-}
-
-MCR_INLINE void draw_lane(double alpha, double nx, double ny, double nz, double ox, double oy, double oz, double u, double v, double *x, double *y,
-                          double *z)
-{
-    double tx, ty, tz, bx, by, bz, lx, ly, lz, wx, wy, wz, out = nx * ox + ny * oy + nz * oz;
-    int visible = out > HORIZON;
-
-    mcr_basis(nx, ny, nz, &tx, &ty, &tz, &bx, &by, &bz);
-    reflect_lane(alpha, tx * ox + ty * oy + tz * oz, bx * ox + by * oy + bz * oz, visible ? out : 1, u, v, &lx, &ly, &lz);
-    mcr_to_world(nx, ny, nz, lx, ly, lz, &wx, &wy, &wz);
-    int above = visible & (nx * wx + ny * wy + nz * wz > HORIZON);
-    *x = above ? wx : 0;
-    *y = above ? wy : 0;
-    *z = above ? wz : 0;
-}
-
-static void draw_lanes(const struct mcr_points *at, const double *restrict alpha, uint32_t stride, const double *restrict u,
-                       const double *restrict v, double *restrict x, double *restrict y, double *restrict z)
+static void density_lanes(const struct mcr_points *at, const struct surface *s, const double *share, const double *restrict x,
+                          const double *restrict y, const double *restrict z, double *restrict density)
 {
     const double *nx = at->nx, *ny = at->ny, *nz = at->nz, *ox = at->ox, *oy = at->oy, *oz = at->oz;
-    const double same = alpha[0];
+    const double *tx = s->t[0], *ty = s->t[1], *tz = s->t[2], *ax = s->ax, *ay = s->ay;
 
-    if (stride)
-        for (uint32_t i = 0; i < at->n; i++)
-            draw_lane(alpha[i], nx[i], ny[i], nz[i], ox[i], oy[i], oz[i], u[i], v[i], &x[i], &y[i], &z[i]);
-    else
-        for (uint32_t i = 0; i < at->n; i++)
-            draw_lane(same, nx[i], ny[i], nz[i], ox[i], oy[i], oz[i], u[i], v[i], &x[i], &y[i], &z[i]);
+    for (uint32_t i = 0; i < at->n; i++) {
+        struct mcr_frame f = mcr_frame(mcr_vector(nx[i], ny[i], nz[i]), mcr_vector(tx[i], ty[i], tz[i]));
+        struct mcr_vector o = mcr_to_frame(f, mcr_vector(ox[i], oy[i], oz[i])), w = mcr_to_frame(f, mcr_vector(x[i], y[i], z[i]));
+        struct mcr_ggx g = mcr_ggx_reflect(ax[i], ay[i], o, w);
+        int above = (o.z > MCR_GGX_HORIZON) & (w.z > MCR_GGX_HORIZON);
+        double value = (1 - share[i]) * g.density + share[i] * (w.z * MCR_PER_PI);
+
+        density[i] = above ? value : 0;
+    }
+}
+
+static void draw_lanes(const struct mcr_points *at, const struct surface *s, const double *share, const double *const *number, double *restrict x,
+                       double *restrict y, double *restrict z)
+{
+    const double *nx = at->nx, *ny = at->ny, *nz = at->nz, *ox = at->ox, *oy = at->oy, *oz = at->oz, *u = number[0], *v = number[1], *choice = number[2];
+    const double *tx = s->t[0], *ty = s->t[1], *tz = s->t[2], *ax = s->ax, *ay = s->ay;
+
+    for (uint32_t i = 0; i < at->n; i++) {
+        struct mcr_frame f = mcr_frame(mcr_vector(nx[i], ny[i], nz[i]), mcr_vector(tx[i], ty[i], tz[i]));
+        struct mcr_vector o = mcr_to_frame(f, mcr_vector(ox[i], oy[i], oz[i])), m, l, w;
+        int visible = o.z > MCR_GGX_HORIZON, diffuse = choice[i] < share[i];
+        double px, py, rest = mcr_disk_from_square(u[i], v[i], &px, &py);
+
+        o.z = visible ? o.z : 1;
+        m = mcr_ggx_visible(ax[i], ay[i], o, u[i], v[i]);
+        l = mcr_mirrored(o, m, mcr_dot(m, m));
+        l.x = diffuse ? px : l.x;
+        l.y = diffuse ? py : l.y;
+        l.z = diffuse ? sqrt(rest) : l.z;
+        w = mcr_from_frame(f, l);
+        int above = visible & (mcr_dot(f.n, w) > MCR_GGX_HORIZON);
+        x[i] = above ? w.x : 0;
+        y[i] = above ? w.y : 0;
+        z[i] = above ? w.z : 0;
+    }
 }
 
 static int32_t draw(const struct mcr_host *host, struct mcr_context *context, const void *instance, const struct mcr_inputs *inputs,
                     const struct mcr_points *at, const double *const *number, const struct mcr_directions *out, double *density)
 {
-    const double *alpha = inputs->channel[CHANNEL(ROUGHNESS)];
-    uint32_t stride = inputs->stride[CHANNEL(ROUGHNESS)];
+    double *room = host->scratch(host, context);
+    const double *share;
+    struct surface s;
 
-    (void)host, (void)context, (void)instance;
-    draw_lanes(at, alpha, stride, number[0], number[1], out->x, out->y, out->z);
+    (void)instance;
+    surface_lanes(at, inputs, room, &s);
+    share = shares(at, inputs, &s, room + SHAPE * mcr_padded(at->n));
+    draw_lanes(at, &s, share, number, out->x, out->y, out->z);
     if (density)
-        density_lanes(at, out->x, out->y, out->z, alpha, stride, density);
+        density_lanes(at, &s, share, out->x, out->y, out->z, density);
     return MCR_OK;
 }
 
 static int32_t density(const struct mcr_host *host, struct mcr_context *context, const void *instance, const struct mcr_inputs *inputs,
                        const struct mcr_points *at, const struct mcr_directions *toward, double *density)
 {
-    (void)host, (void)context, (void)instance;
-    density_lanes(at, toward->x, toward->y, toward->z, inputs->channel[CHANNEL(ROUGHNESS)], inputs->stride[CHANNEL(ROUGHNESS)], density);
+    double *room = host->scratch(host, context);
+    struct surface s;
+
+    (void)instance;
+    surface_lanes(at, inputs, room, &s);
+    density_lanes(at, &s, shares(at, inputs, &s, room + SHAPE * mcr_padded(at->n)), toward->x, toward->y, toward->z, density);
     return MCR_OK;
 }
 
@@ -371,13 +454,14 @@ MCR_HIDDEN const struct mcr_material_plugin MCR_ISA_NAME(descriptor) = {
              .licence = "Apache-2.0",
              .summary = "rough metal: GGX microfacets with a complex index of refraction, two-sided",
              .parameters = parameters},
-    .flags = MCR_MATERIAL_STATELESS,
+    .flags = MCR_MATERIAL_STATELESS | MCR_MATERIAL_TANGENTS,
     .create = create,
     .traits = traits,
     .scratch_bytes = scratch_bytes,
     .evaluate = evaluate,
     .draw = draw,
     .density = density,
+    .albedo = albedo,
 };
 
 MCR_PLUGIN(struct mcr_material_plugin, descriptor);

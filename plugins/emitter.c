@@ -1,10 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* emitter: radiates equally into all directions, from its front or from both sides. With an albedo it also scatters, as lambert does. */
 #include <math.h>
-#include <mcrender/material.h>
-#include <mcrender/sampler.h>
-
-#define PER_PI 0.31830988618379067 /* 1 / pi */
+#include <mcrender/surface.h>
 
 /* The parameters' places in the table, and their first channels among the inputs. */
 enum { RADIANCE, SIDES, ALBEDO, PARAMETERS };
@@ -102,87 +99,21 @@ static int32_t emission(const struct mcr_host *host, struct mcr_context *context
     return MCR_OK;
 }
 
-/* cos / pi where the direction is above the shading normal's and the geometric normal's horizon, else 0; times one albedo for all. */
-static void evaluate_lanes(const struct mcr_points *at, const double *restrict nx, const double *restrict ny, const double *restrict nz,
-                           const double *restrict x, const double *restrict y, const double *restrict z, const double albedo[3],
-                           double *restrict r, double *restrict g, double *restrict b)
-{
-    const double *gx = at->gx, *gy = at->gy, *gz = at->gz;
-    double red = albedo[0], green = albedo[1], blue = albedo[2];
-
-    for (uint32_t i = 0; i < at->n; i++) {
-        double cosine = nx[i] * x[i] + ny[i] * y[i] + nz[i] * z[i];
-        double above = gx[i] * x[i] + gy[i] * y[i] + gz[i] * z[i];
-        double f = cosine > 0 ? cosine * PER_PI : 0;
-        f = above > 0 ? f : 0;
-        r[i] = red * f;
-        g[i] = green * f;
-        b[i] = blue * f;
-    }
-}
-
-static void multiply_lanes(uint32_t n, const double *restrict channel, uint32_t stride, double *restrict out)
-{
-    if (stride)
-        for (uint32_t i = 0; i < n; i++)
-            out[i] *= channel[i];
-    else
-        for (uint32_t i = 0; i < n; i++)
-            out[i] *= channel[0];
-}
-
-/* One pass where the albedo is the same in all lanes; else a pass with albedo 1 and one for each channel: both give albedo * f. */
 static int32_t evaluate(const struct mcr_host *host, struct mcr_context *context, const void *instance, const struct mcr_inputs *inputs,
                         const struct mcr_points *at, const struct mcr_directions *toward, const struct mcr_colours *out)
 {
-    const double *const *channel = inputs->channel + CHANNEL(ALBEDO);
-    const uint32_t *stride = inputs->stride + CHANNEL(ALBEDO);
-    double albedo[3] = {1, 1, 1};
-    int same = !(stride[0] | stride[1] | stride[2]);
-
     (void)host, (void)context, (void)instance;
-    for (uint32_t c = 0; c < 3 && same; c++)
-        albedo[c] = channel[c][0];
-    evaluate_lanes(at, at->nx, at->ny, at->nz, toward->x, toward->y, toward->z, albedo, out->r, out->g, out->b);
-    if (same)
-        return MCR_OK;
-    multiply_lanes(at->n, channel[0], stride[0], out->r);
-    multiply_lanes(at->n, channel[1], stride[1], out->g);
-    multiply_lanes(at->n, channel[2], stride[2], out->b);
+    mcr_cosine_evaluate(inputs, CHANNEL(ALBEDO), at, toward, out);
     return MCR_OK;
-}
-
-static void density_lanes(uint32_t n, const double *restrict nx, const double *restrict ny, const double *restrict nz,
-                          const double *restrict x, const double *restrict y, const double *restrict z, double *restrict density)
-{
-    for (uint32_t i = 0; i < n; i++) {
-        double cosine = nx[i] * x[i] + ny[i] * y[i] + nz[i] * z[i];
-        density[i] = cosine > 0 ? cosine * PER_PI : 0;
-    }
-}
-
-/* In proportion to the cosine. A direction that rounding puts on the horizon or below is not drawn. */
-static void draw_lanes(uint32_t n, const double *restrict nx, const double *restrict ny, const double *restrict nz, const double *restrict u,
-                       const double *restrict v, double *restrict x, double *restrict y, double *restrict z)
-{
-    for (uint32_t i = 0; i < n; i++) {
-        double lx, ly, wx, wy, wz, height = sqrt(mcr_disk_from_square(u[i], v[i], &lx, &ly));
-
-        mcr_to_world(nx[i], ny[i], nz[i], lx, ly, height, &wx, &wy, &wz);
-        int above = nx[i] * wx + ny[i] * wy + nz[i] * wz > 0;
-        x[i] = above ? wx : 0;
-        y[i] = above ? wy : 0;
-        z[i] = above ? wz : 0;
-    }
 }
 
 static int32_t draw(const struct mcr_host *host, struct mcr_context *context, const void *instance, const struct mcr_inputs *inputs,
                     const struct mcr_points *at, const double *const *number, const struct mcr_directions *out, double *density)
 {
     (void)host, (void)context, (void)instance, (void)inputs;
-    draw_lanes(at->n, at->nx, at->ny, at->nz, number[0], number[1], out->x, out->y, out->z);
+    mcr_cosine_draw(at->n, at->nx, at->ny, at->nz, number[0], number[1], out->x, out->y, out->z);
     if (density)
-        density_lanes(at->n, at->nx, at->ny, at->nz, out->x, out->y, out->z, density);
+        mcr_cosine_density(at->n, at->nx, at->ny, at->nz, out->x, out->y, out->z, density);
     return MCR_OK;
 }
 
@@ -190,7 +121,15 @@ static int32_t density(const struct mcr_host *host, struct mcr_context *context,
                        const struct mcr_points *at, const struct mcr_directions *toward, double *density)
 {
     (void)host, (void)context, (void)instance, (void)inputs;
-    density_lanes(at->n, at->nx, at->ny, at->nz, toward->x, toward->y, toward->z, density);
+    mcr_cosine_density(at->n, at->nx, at->ny, at->nz, toward->x, toward->y, toward->z, density);
+    return MCR_OK;
+}
+
+static int32_t albedo(const struct mcr_host *host, struct mcr_context *context, const void *instance, const struct mcr_inputs *inputs,
+                      const struct mcr_points *at, const struct mcr_colours *out)
+{
+    (void)host, (void)context, (void)instance;
+    mcr_colour_lanes(at->n, inputs, CHANNEL(ALBEDO), out);
     return MCR_OK;
 }
 
@@ -211,6 +150,7 @@ MCR_HIDDEN const struct mcr_material_plugin MCR_ISA_NAME(descriptor) = {
     .draw = draw,
     .density = density,
     .emission = emission,
+    .albedo = albedo,
 };
 
 MCR_PLUGIN(struct mcr_material_plugin, descriptor);

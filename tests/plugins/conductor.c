@@ -6,7 +6,7 @@
 #define U 0x1p-53
 #define LENGTH(x) (sizeof(x) / sizeof *(x))
 
-enum { METAL, REFLECTANCE, ETA, K, ROUGHNESS };
+enum { METAL, REFLECTANCE, ETA, K, ROUGHNESS, ANISOTROPY, ROTATION, COMPENSATION, PARAMETERS };
 enum { BY_REFLECTANCE, BY_INDEX, GOLD, SILVER, COPPER, ALUMINIUM };
 
 static const double normal[3] = {0.48, -0.6, 0.64}, upright[3] = {0, 0, 1}; /* cosines to the latter are exact */
@@ -14,8 +14,9 @@ static const double alphas[] = {0.1, 0.25, 0.5, 1}, cosines[] = {1, 0.5, 0.1};
 static uint32_t isa;
 static const struct mcr_material_plugin *plugin;
 
-static void settings_of(double s[15], double metal, double eta, double k, double alpha)
+static void settings_of(double s[24], double metal, double eta, double k, double alpha)
 {
+    memset(s, 0, 24 * sizeof *s);
     for (int c = 0; c < 3; c++)
         s[c] = 0, s[3 + c] = 1, s[6 + c] = eta, s[9 + c] = k, s[12 + c] = 0;
     s[0] = metal;
@@ -24,7 +25,7 @@ static void settings_of(double s[15], double metal, double eta, double k, double
 
 static void set(struct sheet *sheet, double metal, double eta, double k, double alpha)
 {
-    double s[15];
+    double s[24];
 
     settings_of(s, metal, eta, k, alpha);
     sheet_set(sheet, s);
@@ -32,7 +33,7 @@ static void set(struct sheet *sheet, double metal, double eta, double k, double 
 
 static void init(struct sheet *sheet, double alpha)
 {
-    double s[15];
+    double s[24];
 
     settings_of(s, BY_REFLECTANCE, 1, 1, alpha);
     sheet_init(sheet, plugin, LANES, s);
@@ -284,11 +285,11 @@ static void test_horizons(void)
 static uint64_t test_varying(void)
 {
     struct sheet sheet, one;
-    double *lane[15], s[15], wrong = 0;
+    double *lane[24], s[24], wrong = 0;
     uint64_t bits;
 
     init(&sheet, 1), init(&one, 1);
-    for (uint32_t c = 0; c < 15; c++) {
+    for (uint32_t c = 0; c < 24; c++) {
         lane[c] = numbers(LANES, 800 + c);
         sheet.channel[c] = lane[c];
         sheet.stride[c] = 1;
@@ -296,13 +297,19 @@ static uint64_t test_varying(void)
             lane[c][i] = i % 6;
         for (uint32_t i = 0; i < LANES && c == 12; i++)
             lane[c][i] = 1e-7 + lane[c][i] * (1 - 1e-7);
+        for (uint32_t i = 0; i < LANES && c == 3 * ANISOTROPY; i++)
+            lane[c][i] = i % 3 ? 2 * lane[c][i] - 1 : 0;
+        for (uint32_t i = 0; i < LANES && c == 3 * ROTATION; i++)
+            lane[c][i] = i % 4 ? 720 * lane[c][i] - 360 : 0;
+        for (uint32_t i = 0; i < LANES && c == 3 * COMPENSATION; i++)
+            lane[c][i] = lane[c][i] < 0.5;
     }
     bits = sheet_bits(&sheet);
     memcpy(one.toward.x, sheet.toward.x, LANES * sizeof(double));
     memcpy(one.toward.y, sheet.toward.y, LANES * sizeof(double));
     memcpy(one.toward.z, sheet.toward.z, LANES * sizeof(double));
     for (uint32_t i = 0; i < 60; i++) {
-        for (uint32_t c = 0; c < 15; c++)
+        for (uint32_t c = 0; c < 24; c++)
             s[c] = lane[c][i];
         sheet_set(&one, s);
         sheet_evaluate(&one), sheet_density(&one);
@@ -312,7 +319,7 @@ static uint64_t test_varying(void)
     ok(wrong == 0, "%u: settings may vary from lane to lane", isa);
     ok(guarded(sheet.colour.r, LANES) && guarded(sheet.colour.b, LANES) && guarded(sheet.density, LANES) && guarded(sheet.toward.z, LANES),
        "%u: nothing is written behind the lanes", isa);
-    for (uint32_t c = 0; c < 15; c++)
+    for (uint32_t c = 0; c < 24; c++)
         free(lane[c]);
     sheet_fini(&sheet), sheet_fini(&one);
     return bits;
@@ -329,9 +336,9 @@ static void test_create(void)
     uint32_t wrong = 0;
 
     for (uint32_t k = 0; k < LENGTH(cases); k++) {
-        double s[15];
-        uint32_t given[5] = {1, cases[k].reflectance, cases[k].eta, cases[k].k, 0};
-        struct mcr_values values = {sizeof values, 5, s, given};
+        double s[24];
+        uint32_t given[PARAMETERS] = {1, cases[k].reflectance, cases[k].eta, cases[k].k};
+        struct mcr_values values = {sizeof values, PARAMETERS, s, given};
         struct mcr_creation with = {sizeof with, 0, &values, NULL, NULL, 16, 0};
         struct mcr_context context = {.message = ""};
         void *instance;
@@ -340,6 +347,79 @@ static void test_create(void)
         wrong += plugin->create(&stand_in, &context, &with, &instance) != cases[k].status || (context.message[0] != 0) != (cases[k].status < 0);
     }
     ok(wrong == 0, "%u: a setting that would be ignored is an error", isa);
+}
+
+/* With compensation the white furnace keeps its light at every angle: to 1e-3, or 5e-5 from alpha = 0.1 on, and 4 standard errors. */
+static void test_compensation(void)
+{
+    static const double alpha[] = {0.01, 0.03, 0.1, 0.3, 0.6, 1}, mu[] = {1, 0.7, 0.3, 0.05};
+    double worst = 0, most = 0, sharp = 0;
+    uint32_t bad = 0, off = 0;
+    struct sheet sheet;
+
+    init(&sheet, 1);
+    for (uint32_t a = 0; a < LENGTH(alpha); a++)
+        for (uint32_t m = 0; m < LENGTH(mu); m++) {
+            struct estimate drawn;
+            double z, mass, allowed = alpha[a] < 0.1 ? 1e-3 : 5e-5;
+
+            set(&sheet, BY_REFLECTANCE, 1, 1, alpha[a]);
+            for (int i = 0; i < 8; i++)
+                sheet.copies[3 * COMPENSATION][i] = 1;
+            sheet_view(&sheet, normal, mu[m], 0.3);
+            drawn = albedo_drawn(&sheet, 128, 900 + 4 * a + m);
+            off += fabs(drawn.mean - 1) > allowed + 4 * drawn.error;
+            worst = fmax(worst, fabs(drawn.mean - 1)), sharp = fmax(sharp, drawn.error), bad += drawn.bad;
+            if (a > 1)
+                most = fmax(most, drawn.most);
+            if (a > 2) {
+                z = chi_square(&sheet, normal, 32, 940 + 4 * a + m, &mass);
+                ok(z <= 4, "%u: compensated, draws follow the density, alpha %g, cos %g: chi-square z %.2f", isa, alpha[a], mu[m], z);
+            }
+        }
+    ok(off == 0 && bad == 0 && sharp < 2e-3, "%u: compensated, a white metal keeps all light (%.1e off, standard errors up to %.1e)", isa, worst, sharp);
+    ok(most < 3, "%u: compensated, no weight above 3 from alpha 0.1 on (%.2f)", isa, most);
+    sheet_fini(&sheet);
+}
+
+/*
+ * Anisotropic: draws follow the density, f is reciprocal, and a quarter turn of the tangent swaps the signs of the anisotropy. What compensation makes of
+ * it is not exact: it knows the widths' root mean square only.
+ */
+static void test_anisotropy(void)
+{
+    static const double leans[] = {0.5, -0.8, 1}, mu[] = {0.9, 0.3};
+    double turned = 0, furnace = 0, least = 2;
+    struct sheet sheet;
+
+    init(&sheet, 1);
+    for (uint32_t k = 0; k < LENGTH(leans); k++)
+        for (uint32_t m = 0; m < LENGTH(mu); m++) {
+            double mass, z, f;
+
+            set(&sheet, BY_REFLECTANCE, 1, 1, 0.6);
+            for (int i = 0; i < 8; i++)
+                sheet.copies[3 * ANISOTROPY][i] = leans[k], sheet.copies[3 * ROTATION][i] = 25;
+            sheet_view(&sheet, normal, mu[m], 1.1);
+            if (leans[k] < 1) {
+                z = chi_square(&sheet, normal, 64, 960 + 4 * k + m, &mass);
+                ok(z <= 4, "%u: anisotropy %g, cos %g: draws follow the density, chi-square z %.2f", isa, leans[k], mu[m], z);
+            }
+            sheet_toward(&sheet, 0, normal, 0.8, 4.4);
+            sheet_evaluate(&sheet);
+            f = sheet.colour.g[0];
+            for (int i = 0; i < 8; i++)
+                sheet.copies[3 * ANISOTROPY][i] = -leans[k], sheet.copies[3 * ROTATION][i] = -65;
+            sheet_evaluate(&sheet);
+            turned = fmax(turned, fabs(f - sheet.colour.g[0]) / (f > 0 ? f : 1));
+            for (int i = 0; i < 8; i++)
+                sheet.copies[3 * COMPENSATION][i] = 1;
+            f = albedo_drawn(&sheet, 64, 980 + 4 * k + m).mean;
+            furnace = fmax(furnace, f), least = fmin(least, f);
+        }
+    ok(turned < 1e-13, "%u: a quarter turn swaps the widths (%.1e)", isa, turned);
+    ok(furnace < 1.1 && least > 0.9, "%u: compensated and anisotropic, a white metal keeps its light to 10 %% (%.3f to %.3f)", isa, least, furnace);
+    sheet_fini(&sheet);
 }
 
 int main(void)
@@ -353,10 +433,12 @@ int main(void)
             tap_skip("an instruction set", "this processor or build lacks it");
             continue;
         }
-        ok(plugin->flags == MCR_MATERIAL_STATELESS, "%u: stateless", isa);
+        ok(plugin->flags == (MCR_MATERIAL_STATELESS | MCR_MATERIAL_TANGENTS), "%u: stateless", isa);
         if (isa == MCR_ISA_BASELINE) { /* the others have its bits */
             test_albedo();
             test_draw();
+            test_compensation();
+            test_anisotropy();
         }
         test_fresnel();
         test_reciprocity();

@@ -8,7 +8,7 @@
 
 #include "stand_in.h"
 
-#define CHANNELS 15 /* of 5 parameters */
+#define CHANNELS 96 /* of 32 parameters */
 
 /* A material with the same settings in all lanes, and the arrays of one batch. */
 struct sheet {
