@@ -138,7 +138,7 @@ MCR_INLINE struct mcr_ggx mcr_ggx_reflect(double ax, double ay, struct mcr_vecto
  * unit vector along +-(o + n w) (Walter et al., equations 16, 17 and 21). That is for radiance: in the value's integral 1 / n^2 of what enters arrives.
  * n - 1 is kept off 0 by MCR_INDEX_LEAST: light is bent by less than that where there is no interface at all.
  */
-#define MCR_INDEX_LEAST 1e-7
+#define MCR_INDEX_LEAST 1e-6
 MCR_INLINE struct mcr_ggx mcr_ggx_transmit(double ax, double ay, struct mcr_vector o, struct mcr_vector w, double n)
 {
     double excess = n - 1, bent = excess < 0 ? (excess < -MCR_INDEX_LEAST ? excess : -MCR_INDEX_LEAST)

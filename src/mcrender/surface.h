@@ -161,7 +161,7 @@ MCR_LOOP void mcr_cosine_lanes_(const struct mcr_points *at, const double *restr
     }
 }
 
-MCR_LOOP void mcr_multiply_lanes_(uint32_t n, const double *restrict channel, uint32_t stride, double *restrict out)
+MCR_LOOP void mcr_multiply_lanes(uint32_t n, const double *restrict channel, uint32_t stride, double *restrict out)
 {
     if (stride)
         for (uint32_t i = 0; i < n; i++)
@@ -188,9 +188,9 @@ MCR_LOOP void mcr_cosine_evaluate(const struct mcr_inputs *inputs, uint32_t firs
     mcr_cosine_lanes_(at, at->nx, at->ny, at->nz, toward->x, toward->y, toward->z, albedo, out->r, out->g, out->b);
     if (same)
         return;
-    mcr_multiply_lanes_(at->n, channel[0], stride[0], out->r);
-    mcr_multiply_lanes_(at->n, channel[1], stride[1], out->g);
-    mcr_multiply_lanes_(at->n, channel[2], stride[2], out->b);
+    mcr_multiply_lanes(at->n, channel[0], stride[0], out->r);
+    mcr_multiply_lanes(at->n, channel[1], stride[1], out->g);
+    mcr_multiply_lanes(at->n, channel[2], stride[2], out->b);
 }
 
 /* The density of directions in proportion to the cosine: x, y and z are their arrays. */
@@ -225,7 +225,7 @@ MCR_LOOP void mcr_colour_lanes(uint32_t n, const struct mcr_inputs *inputs, uint
 
     for (uint32_t c = 0; c < 3; c++) {
         mcr_fill_lanes(n, 1, result[c]);
-        mcr_multiply_lanes_(n, inputs->channel[first + c], inputs->stride[first + c], result[c]);
+        mcr_multiply_lanes(n, inputs->channel[first + c], inputs->stride[first + c], result[c]);
     }
 }
 

@@ -23,6 +23,7 @@ struct sheet {
     struct mcr_colours colour;
     double *density, *number[3];
     struct mcr_context context;
+    void *instance; /* NULL of what is stateless */
 };
 
 /* `settings`: 3 numbers for each parameter. */
@@ -102,17 +103,17 @@ static __attribute__((unused)) void sheet_numbers(struct sheet *s, uint64_t stre
 
 static __attribute__((unused)) void sheet_draw(struct sheet *s)
 {
-    s->plugin->draw(&stand_in, &s->context, NULL, &s->inputs, &s->at, (const double *const *)s->number, &s->toward, s->density);
+    s->plugin->draw(&stand_in, &s->context, s->instance, &s->inputs, &s->at, (const double *const *)s->number, &s->toward, s->density);
 }
 
 static __attribute__((unused)) void sheet_density(struct sheet *s)
 {
-    s->plugin->density(&stand_in, &s->context, NULL, &s->inputs, &s->at, &s->toward, s->density);
+    s->plugin->density(&stand_in, &s->context, s->instance, &s->inputs, &s->at, &s->toward, s->density);
 }
 
 static __attribute__((unused)) void sheet_evaluate(struct sheet *s)
 {
-    s->plugin->evaluate(&stand_in, &s->context, NULL, &s->inputs, &s->at, &s->toward, &s->colour);
+    s->plugin->evaluate(&stand_in, &s->context, s->instance, &s->inputs, &s->at, &s->toward, &s->colour);
 }
 
 /* A mean and its standard error. */
@@ -169,12 +170,19 @@ static __attribute__((unused)) double albedo_uniform(struct sheet *s, const doub
     return sum * 2 * M_PI / ((double)rows * columns);
 }
 
+/* Delta lobes; the weights go to `colour`, the probabilities to `density`. */
+static __attribute__((unused)) void sheet_delta(struct sheet *s)
+{
+    s->plugin->delta(&stand_in, &s->context, s->instance, &s->inputs, &s->at, (const double *const *)s->number, &s->toward, s->density, &s->colour);
+}
+
 /*
  * Chi-square of drawn directions over 16 x 16 cells of (cosine, azimuth), the last cell being "nothing drawn", against the density integrated by 64 x 64
  * points a cell; as a normal deviate (Wilson and Hilferty). Cells with fewer than 10 expected are put together.
  */
-static __attribute__((unused)) double chi_square(struct sheet *s, const double n[3], uint32_t batches, uint64_t stream, double *mass)
+static __attribute__((unused)) double chi_square_over(struct sheet *s, const double n[3], uint32_t batches, uint64_t stream, double lowest, double *mass)
 {
+    const double span = 1 - lowest; /* of cosines */
     enum { CELLS = 16, FINE = 64 };
     static double expected[CELLS * CELLS + 1];
     static uint64_t count[CELLS * CELLS + 1];
@@ -190,22 +198,22 @@ static __attribute__((unused)) double chi_square(struct sheet *s, const double n
         for (uint32_t i = 0; i < s->n; i++) {
             double x = s->toward.x[i], y = s->toward.y[i], z = s->toward.z[i], mu = x * n[0] + y * n[1] + z * n[2];
             double angle = atan2(x * b[0] + y * b[1] + z * b[2], x * t[0] + y * t[1] + z * t[2]) / (2 * M_PI);
-            int row = (int)(mu * CELLS), column = (int)((angle - floor(angle)) * CELLS);
+            int row = (int)((mu - lowest) / span * CELLS), column = (int)((angle - floor(angle)) * CELLS);
 
-            row = row < CELLS ? row : CELLS - 1, column = column < CELLS ? column : CELLS - 1;
+            row = row < 0 ? 0 : row < CELLS ? row : CELLS - 1, column = column < CELLS ? column : CELLS - 1;
             count[x == 0 && y == 0 && z == 0 ? CELLS * CELLS : row * CELLS + column]++;
         }
     }
     for (uint32_t fine = 0; fine < CELLS * FINE * CELLS * FINE; fine++) {
         uint32_t row = fine / (CELLS * FINE), column = fine % (CELLS * FINE);
 
-        sheet_toward(s, lane, n, (row + 0.5) / (CELLS * FINE), 2 * M_PI * (column + 0.5) / (CELLS * FINE));
+        sheet_toward(s, lane, n, lowest + span * (row + 0.5) / (CELLS * FINE), 2 * M_PI * (column + 0.5) / (CELLS * FINE));
         if (++lane < s->n && fine + 1 < CELLS * FINE * CELLS * FINE)
             continue;
         sheet_density(s);
         for (uint32_t i = 0; i < lane; i++) {
             uint32_t f = fine + 1 - lane + i;
-            expected[f / (CELLS * FINE) / FINE * CELLS + f % (CELLS * FINE) / FINE] += s->density[i] * 2 * M_PI / ((double)(CELLS * FINE) * (CELLS * FINE));
+            expected[f / (CELLS * FINE) / FINE * CELLS + f % (CELLS * FINE) / FINE] += s->density[i] * span * 2 * M_PI / ((double)(CELLS * FINE) * (CELLS * FINE));
         }
         lane = 0;
     }
@@ -222,6 +230,12 @@ static __attribute__((unused)) double chi_square(struct sheet *s, const double n
     }
     chi += few > 0 ? (few_count - few) * (few_count - few) / (few < 1 ? 1 : few) : few_count;
     return (cbrt(chi / df) - (1 - 2 / (9.0 * df))) / sqrt(2 / (9.0 * df));
+}
+
+/* Over the hemisphere of the outgoing direction. */
+static __attribute__((unused)) double chi_square(struct sheet *s, const double n[3], uint32_t batches, uint64_t stream, double *mass)
+{
+    return chi_square_over(s, n, batches, stream, 0, mass);
 }
 
 /* A checksum over the bits of draw, density and evaluate at the stand-in's points with settings of which some vary. */

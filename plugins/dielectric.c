@@ -1,0 +1,447 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * dielectric: glass, water and the like: Fresnel's reflection and refraction at a smooth interface (two mirror-like lobes) or at a rough one of GGX
+ * microfacets (Walter et al., "Microfacet models for refraction through rough surfaces", 2007). Radiance that enters an index n is n^2 times what it was.
+ * The interior behind the front side absorbs as Beer and Lambert have it; where it overlaps others, priority decides.
+ *
+ * Light that meets more than one microfacet is lost, as with a conductor.
+ *
+ * A thin wall has both interfaces in one and light passes straight on. Of the unpolarised reflectance R of one of them and the share t that crosses the
+ * wall's inside, all internal reflections together reflect R + (1 - R)^2 t^2 R / (1 - R^2 t^2) and pass (1 - R)^2 t / (1 - R^2 t^2).
+ * A rough one scatters what passes as it scatters what it reflects, to the other side.
+ *
+ * With roughness 0 the surface is smooth. A texture of roughness that is not 0 everywhere makes lobes, of 1e-7 rad where it is 0.
+ */
+#include <mcrender/math.h>
+#include <mcrender/microfacet.h>
+
+/* Parameters, in the order of the table. */
+enum { INDEX, ROUGHNESS, THIN, TRANSMITTANCE, DEPTH, ATTENUATION, PRIORITY, PARAMETERS };
+#define CHANNEL(parameter) (3 * (parameter))
+
+static const struct mcr_parameter parameters[PARAMETERS] = {
+    [INDEX] = {.size = sizeof(struct mcr_parameter),
+               .type = MCR_TYPE_NUMBER,
+               .name = "index",
+               .unit = "",
+               .summary = "Index of refraction of what is behind the front side.",
+               .fallback = {1.5},
+               .min = 1e-3,
+               .max = 1e6},
+    [ROUGHNESS] = {.size = sizeof(struct mcr_parameter),
+                   .type = MCR_TYPE_NUMBER,
+                   .flags = MCR_PARAMETER_VARYING,
+                   .name = "roughness",
+                   .unit = "",
+                   .summary = "The alpha of GGX, the width of the slopes' distribution; 0 is smooth.",
+                   .fallback = {0},
+                   .min = 0,
+                   .max = 1},
+    [THIN] = {.size = sizeof(struct mcr_parameter),
+              .type = MCR_TYPE_CHOICE,
+              .name = "thin",
+              .unit = "",
+              .choices = "no|yes",
+              .summary = "Whether the surface is a thin wall, through which light passes straight on, and not the boundary of an interior.",
+              .fallback = {0}},
+    [TRANSMITTANCE] = {.size = sizeof(struct mcr_parameter),
+                       .type = MCR_TYPE_COLOUR,
+                       .flags = MCR_PARAMETER_ABOVE_MIN,
+                       .name = "transmittance",
+                       .unit = "",
+                       .summary = "Share of light that is left after the distance `depth` inside, or after crossing a thin wall at any angle.",
+                       .fallback = {1, 1, 1},
+                       .min = 0,
+                       .max = 1},
+    [DEPTH] = {.size = sizeof(struct mcr_parameter),
+               .type = MCR_TYPE_NUMBER,
+               .flags = MCR_PARAMETER_ABOVE_MIN,
+               .name = "depth",
+               .unit = "scene length",
+               .summary = "The distance of `transmittance`.",
+               .fallback = {1},
+               .min = 0,
+               .max = HUGE_VAL},
+    [ATTENUATION] = {.size = sizeof(struct mcr_parameter),
+                     .type = MCR_TYPE_COLOUR,
+                     .name = "attenuation",
+                     .unit = "1/scene length",
+                     .summary = "Absorption inside: light falls as exp(-attenuation * distance). The other way of saying `transmittance` and `depth`.",
+                     .fallback = {0},
+                     .min = 0,
+                     .max = HUGE_VAL},
+    [PRIORITY] = {.size = sizeof(struct mcr_parameter),
+                  .type = MCR_TYPE_NUMBER,
+                  .name = "priority",
+                  .unit = "",
+                  .summary = "Where interiors overlap, that of the highest priority counts.",
+                  .fallback = {0},
+                  .min = -1e9,
+                  .max = 1e9},
+};
+
+static int32_t refuse(const struct mcr_host *host, struct mcr_context *context, const char *text)
+{
+    host->report(host, context, MCR_REPORT_ERROR, text);
+    return MCR_E_INVALID;
+}
+
+/* Light falls by exp(-attenuation distance). */
+static double attenuation_of(const struct mcr_values *values, int c)
+{
+    if (values->given[TRANSMITTANCE])
+        return -mcr_log(values->number[CHANNEL(TRANSMITTANCE) + c]) / values->number[CHANNEL(DEPTH)] + 0.0;
+    return values->number[CHANNEL(ATTENUATION) + c];
+}
+
+/* What would be ignored is a mistake. */
+static int32_t create(const struct mcr_host *host, struct mcr_context *context, const struct mcr_creation *with, void **instance)
+{
+    const uint32_t *given = with->values->given;
+
+    *instance = NULL;
+    if (with->values->number[CHANNEL(THIN)] != 0 && (given[DEPTH] || given[ATTENUATION] || given[PRIORITY]))
+        return refuse(host, context, "'depth', 'attenuation' and 'priority' have no effect with 'thin yes': a thin wall has no interior");
+    if (given[TRANSMITTANCE] && given[ATTENUATION])
+        return refuse(host, context, "'transmittance' and 'attenuation' say the same: give one of them");
+    if (given[DEPTH] && !given[TRANSMITTANCE])
+        return refuse(host, context, "'depth' has no effect without 'transmittance'");
+    for (int c = 0; c < 3 && with->values->number[CHANNEL(THIN)] == 0; c++)
+        if (!(attenuation_of(with->values, c) < HUGE_VAL))
+            return refuse(host, context, "'depth' is too small for this 'transmittance': the attenuation is infinite");
+    return MCR_OK;
+}
+
+static int32_t traits(const struct mcr_host *host, struct mcr_context *context, const void *instance, const struct mcr_values *values,
+                      struct mcr_material_traits *traits)
+{
+    (void)host, (void)context, (void)instance;
+    traits->does = values->number[CHANNEL(ROUGHNESS)] > 0 ? MCR_MATERIAL_REFLECTS | MCR_MATERIAL_TRANSMITS : MCR_MATERIAL_DELTA;
+    if (values->number[CHANNEL(THIN)] == 0) {
+        traits->does |= MCR_MATERIAL_INTERIOR;
+        traits->index = values->number[CHANNEL(INDEX)];
+        for (int c = 0; c < 3; c++)
+            traits->attenuation[c] = attenuation_of(values, c);
+        traits->priority = values->number[CHANNEL(PRIORITY)];
+    }
+    return MCR_OK;
+}
+
+/* Arrays of scratch, of mcr_padded(n) doubles each. TANGENT is 3. */
+enum { RATIO, WALL, INDEX_LANES, ALPHA, THIN_LANES, TANGENT, VALUES = TANGENT + 3, COSINES, CROSSED, ARRAYS };
+
+static uint64_t scratch_bytes(const void *instance, uint32_t n)
+{
+    (void)instance;
+    return ARRAYS * mcr_padded(n) * sizeof(double);
+}
+
+/* ---- the interface ---- */
+
+/* Per lane: the relative index of an interface and of a wall, whether it is thin, and alpha, at least what a lobe can be. */
+struct interface {
+    const double *ratio, *thin, *alpha;
+};
+
+static void choose_lanes(uint32_t n, const double *thin, const double *wall, double *restrict ratio)
+{
+    for (uint32_t i = 0; i < n; i++)
+        ratio[i] = thin[i] != 0 ? wall[i] : ratio[i];
+}
+
+static void at_least_lanes(uint32_t n, const double *alpha, double *restrict out)
+{
+    for (uint32_t i = 0; i < n; i++)
+        out[i] = alpha[i] > MCR_GGX_LEAST ? alpha[i] : MCR_GGX_LEAST;
+}
+
+static struct interface interface_lanes(const struct mcr_points *at, const struct mcr_inputs *inputs, double *room)
+{
+    const uint64_t stride = mcr_padded(at->n);
+    const double *index = mcr_input_lanes(inputs, CHANNEL(INDEX), at->n, room + INDEX_LANES * stride);
+    struct interface s = {room + RATIO * stride, mcr_input_lanes(inputs, CHANNEL(THIN), at->n, room + THIN_LANES * stride), room + ALPHA * stride};
+
+    mcr_ratio_lanes(at, index, 0, room + RATIO * stride);
+    if (inputs->stride[CHANNEL(THIN)] || inputs->channel[CHANNEL(THIN)][0] != 0) {
+        mcr_ratio_lanes(at, index, 1, room + WALL * stride);
+        choose_lanes(at->n, s.thin, room + WALL * stride, room + RATIO * stride);
+    }
+    at_least_lanes(at->n, mcr_input_lanes(inputs, CHANNEL(ROUGHNESS), at->n, room + WALL * stride), room + ALPHA * stride);
+    return s;
+}
+
+/* The shares that are reflected and passed on at the cosine c, of light of which `inside` crosses a thin wall. */
+struct shares {
+    double reflected, passed, q;
+};
+
+MCR_INLINE struct shares shares_of(double c, double ratio, double thin, double inside)
+{
+    struct shares s;
+    double r, t, again;
+
+    r = mcr_fresnel_dielectric(c, ratio, &s.q);
+    t = 1 - r;
+    again = 1 - r * r * (inside * inside);
+    again = 1 / (again > 0 ? again : 1);
+    s.reflected = thin != 0 ? r + t * t * (inside * inside) * r * again : r;
+    s.passed = thin != 0 ? t * t * inside * again : t;
+    return s;
+}
+
+/* ---- smooth ---- */
+
+/* The directions of both lobes; `passes`: 1 where the second one was chosen. The choice knows clear walls only, and is right for coloured ones. */
+static void lobe_lanes(const struct mcr_points *at, const struct interface *s, const double *choice, double *restrict x, double *restrict y,
+                       double *restrict z, double *restrict probability, double *restrict passes, double *restrict cosine)
+{
+    const double *nx = at->nx, *ny = at->ny, *nz = at->nz, *gx = at->gx, *gy = at->gy, *gz = at->gz, *ox = at->ox, *oy = at->oy, *oz = at->oz;
+    const double *ratio = s->ratio, *thin = s->thin;
+
+    for (uint32_t i = 0; i < at->n; i++) {
+        struct mcr_vector n = mcr_vector(nx[i], ny[i], nz[i]), o = mcr_vector(ox[i], oy[i], oz[i]), w, t;
+        double c = mcr_dot(n, o), below, fix;
+        struct shares f = shares_of(c < 1 ? c : 1, ratio[i], thin[i], 1);
+        int second = choice[i] >= f.reflected, right;
+
+        w = mcr_mirrored(o, n, mcr_dot(n, n));
+        t = mcr_refracted(o, n, c, ratio[i], f.q);
+        t.x = thin[i] != 0 ? -o.x : t.x;
+        t.y = thin[i] != 0 ? -o.y : t.y;
+        t.z = thin[i] != 0 ? -o.z : t.z;
+        w.x = second ? t.x : w.x;
+        w.y = second ? t.y : w.y;
+        w.z = second ? t.z : w.z;
+        fix = 0.5 * (1 - mcr_dot(w, w));
+        below = gx[i] * w.x + gy[i] * w.y + gz[i] * w.z;
+        right = (c > 0) & (second ? below < 0 : below > 0);
+        x[i] = right ? w.x + w.x * fix : 0;
+        y[i] = right ? w.y + w.y * fix : 0;
+        z[i] = right ? w.z + w.z * fix : 0;
+        probability[i] = c > 0 ? (second ? f.passed : f.reflected) : 1;
+        passes[i] = right ? (second ? 1 : 0) : -1; /* neither: what the shading normal sends to the wrong side is absorbed */
+        cosine[i] = c;
+    }
+}
+
+/* A refracted lobe's weight is for radiance: the share that passes, over ratio^2. `inside` counts for walls. */
+static void weight_lanes(uint32_t n, const struct interface *s, const double *passes, const double *cosine, const double *inside, uint32_t stride,
+                         double *restrict out)
+{
+    const double *ratio = s->ratio, *thin = s->thin;
+
+    for (uint32_t i = 0; i < n; i++) {
+        struct shares f = shares_of(cosine[i] < 1 ? cosine[i] : 1, ratio[i], thin[i], inside[i * stride]);
+        double scaled = f.passed / (ratio[i] * ratio[i]), passed = thin[i] != 0 ? f.passed : scaled;
+        out[i] = passes[i] > 0 ? passed : passes[i] < 0 ? 0 : f.reflected;
+    }
+}
+
+static int32_t delta(const struct mcr_host *host, struct mcr_context *context, const void *instance, const struct mcr_inputs *inputs,
+                     const struct mcr_points *at, const double *const *number, const struct mcr_directions *out, double *probability,
+                     const struct mcr_colours *weight)
+{
+    double *room = host->scratch(host, context), *channel[3] = {weight->r, weight->g, weight->b};
+    double *passes = room + CROSSED * mcr_padded(at->n), *cosine = room + COSINES * mcr_padded(at->n);
+    struct interface s = interface_lanes(at, inputs, room);
+
+    (void)instance;
+    lobe_lanes(at, &s, number[0], out->x, out->y, out->z, probability, passes, cosine);
+    for (uint32_t c = 0; c < 3; c++)
+        weight_lanes(at->n, &s, passes, cosine, inputs->channel[CHANNEL(TRANSMITTANCE) + c], inputs->stride[CHANNEL(TRANSMITTANCE) + c], channel[c]);
+    return MCR_OK;
+}
+
+/* ---- rough ---- */
+
+/* What one lane scatters from o to w: the value without the shares, the density with them, the cosine at the facet, whether w is on the other side. */
+MCR_INLINE struct mcr_ggx facet_lane(double alpha, double ratio, double thin, struct mcr_vector o, struct mcr_vector w)
+{
+    struct mcr_vector up = mcr_vector(w.x, w.y, fabs(w.z));
+    struct mcr_ggx reflected = mcr_ggx_reflect(alpha, alpha, o, up), refracted = mcr_ggx_transmit(alpha, alpha, o, w, ratio), g;
+    int bends = (thin == 0) & (w.z < 0);
+    struct shares f;
+
+    g.value = bends ? refracted.value : reflected.value;
+    g.density = bends ? refracted.density : reflected.density;
+    g.cosine = bends ? refracted.cosine : reflected.cosine;
+    f = shares_of(g.cosine, ratio, thin, 1);
+    g.density *= w.z < 0 ? f.passed : f.reflected;
+    return g;
+}
+
+static void facet_lanes(const struct mcr_points *at, const struct interface *s, const double *const tangent[3], const double *restrict x,
+                        const double *restrict y, const double *restrict z, double *restrict value, double *restrict cosine, double *restrict crossed)
+{
+    const double *nx = at->nx, *ny = at->ny, *nz = at->nz, *gx = at->gx, *gy = at->gy, *gz = at->gz, *ox = at->ox, *oy = at->oy, *oz = at->oz;
+    const double *tx = tangent[0], *ty = tangent[1], *tz = tangent[2], *ratio = s->ratio, *thin = s->thin, *alpha = s->alpha;
+
+    for (uint32_t i = 0; i < at->n; i++) {
+        struct mcr_frame f = mcr_frame(mcr_vector(nx[i], ny[i], nz[i]), mcr_vector(tx[i], ty[i], tz[i]));
+        struct mcr_vector o = mcr_to_frame(f, mcr_vector(ox[i], oy[i], oz[i])), w = mcr_to_frame(f, mcr_vector(x[i], y[i], z[i]));
+        struct mcr_ggx g = facet_lane(alpha[i], ratio[i], thin[i], o, w);
+        double below = gx[i] * x[i] + gy[i] * y[i] + gz[i] * z[i];
+        int right = w.z < 0 ? below < 0 : below > 0;
+
+        value[i] = right ? g.value : 0;
+        cosine[i] = g.cosine;
+        crossed[i] = w.z < 0 ? 1 : 0;
+    }
+}
+
+/* The value of a refraction is for radiance already. */
+static void share_lanes(uint32_t n, const struct interface *s, const double *value, const double *cosine, const double *crossed, const double *inside,
+                        uint32_t stride, double *restrict out)
+{
+    const double *ratio = s->ratio, *thin = s->thin;
+
+    for (uint32_t i = 0; i < n; i++) {
+        struct shares f = shares_of(cosine[i], ratio[i], thin[i], inside[i * stride]);
+        out[i] = value[i] * (crossed[i] != 0 ? f.passed : f.reflected);
+    }
+}
+
+static int32_t evaluate(const struct mcr_host *host, struct mcr_context *context, const void *instance, const struct mcr_inputs *inputs,
+                        const struct mcr_points *at, const struct mcr_directions *toward, const struct mcr_colours *out)
+{
+    double *room = host->scratch(host, context), *channel[3] = {out->r, out->g, out->b};
+    const uint64_t stride = mcr_padded(at->n);
+    double *value = room + VALUES * stride, *cosine = room + COSINES * stride, *crossed = room + CROSSED * stride;
+    struct interface s = interface_lanes(at, inputs, room);
+    const double *tangent[3];
+
+    (void)instance;
+    mcr_tangent_lanes(at, room + TANGENT * stride, tangent);
+    facet_lanes(at, &s, tangent, toward->x, toward->y, toward->z, value, cosine, crossed);
+    for (uint32_t c = 0; c < 3; c++)
+        share_lanes(at->n, &s, value, cosine, crossed, inputs->channel[CHANNEL(TRANSMITTANCE) + c], inputs->stride[CHANNEL(TRANSMITTANCE) + c], channel[c]);
+    return MCR_OK;
+}
+
+static void density_lanes(const struct mcr_points *at, const struct interface *s, const double *const tangent[3], const double *restrict x,
+                          const double *restrict y, const double *restrict z, double *restrict density)
+{
+    const double *nx = at->nx, *ny = at->ny, *nz = at->nz, *ox = at->ox, *oy = at->oy, *oz = at->oz;
+    const double *tx = tangent[0], *ty = tangent[1], *tz = tangent[2], *ratio = s->ratio, *thin = s->thin, *alpha = s->alpha;
+
+    for (uint32_t i = 0; i < at->n; i++) {
+        struct mcr_frame f = mcr_frame(mcr_vector(nx[i], ny[i], nz[i]), mcr_vector(tx[i], ty[i], tz[i]));
+        struct mcr_vector o = mcr_to_frame(f, mcr_vector(ox[i], oy[i], oz[i])), w = mcr_to_frame(f, mcr_vector(x[i], y[i], z[i]));
+
+        density[i] = facet_lane(alpha[i], ratio[i], thin[i], o, w).density;
+    }
+}
+
+static void draw_lanes(const struct mcr_points *at, const struct interface *s, const double *const tangent[3], const double *const *number,
+                       double *restrict x, double *restrict y, double *restrict z)
+{
+    const double *nx = at->nx, *ny = at->ny, *nz = at->nz, *ox = at->ox, *oy = at->oy, *oz = at->oz, *u = number[0], *v = number[1], *choice = number[2];
+    const double *tx = tangent[0], *ty = tangent[1], *tz = tangent[2], *ratio = s->ratio, *thin = s->thin, *alpha = s->alpha;
+
+    for (uint32_t i = 0; i < at->n; i++) {
+        struct mcr_frame f = mcr_frame(mcr_vector(nx[i], ny[i], nz[i]), mcr_vector(tx[i], ty[i], tz[i]));
+        struct mcr_vector o = mcr_to_frame(f, mcr_vector(ox[i], oy[i], oz[i])), m, l, t, w;
+        int visible = o.z > MCR_GGX_HORIZON, second, right;
+        double length, c, bent = mcr_ggx_index(ratio[i]), root2, above;
+        struct shares share;
+
+        o.z = visible ? o.z : 1;
+        m = mcr_ggx_visible(alpha[i], alpha[i], o, u[i], v[i]);
+        length = mcr_dot(m, m);
+        l = mcr_mirrored(o, m, length);
+        length = 1 / sqrt(length > 0 ? length : 1);
+        m = mcr_vector(m.x * length, m.y * length, m.z * length);
+        c = mcr_dot(o, m);
+        c = c < 1 ? c : 1;
+        share = shares_of(c, ratio[i], thin[i], 1);
+        second = choice[i] >= share.reflected;
+        root2 = (bent - 1) * (bent + 1) + c * c;
+        t = mcr_refracted(o, m, c, bent, sqrt(root2 > 0 ? root2 : 0));
+        t.x = thin[i] != 0 ? l.x : t.x; /* a thin wall passes the mirrored direction's image on the other side */
+        t.y = thin[i] != 0 ? l.y : t.y;
+        t.z = thin[i] != 0 ? -l.z : t.z;
+        l.x = second ? t.x : l.x;
+        l.y = second ? t.y : l.y;
+        l.z = second ? t.z : l.z;
+        w = mcr_from_frame(f, l);
+        above = mcr_dot(f.n, w);
+        right = visible & (second ? above < -MCR_GGX_HORIZON : above > MCR_GGX_HORIZON);
+        x[i] = right ? w.x : 0;
+        y[i] = right ? w.y : 0;
+        z[i] = right ? w.z : 0;
+    }
+}
+
+/* Where rounding leaves no density, as close to index 1, nothing was drawn. */
+static void drop_lanes(uint32_t n, const double *restrict density, double *restrict x, double *restrict y, double *restrict z)
+{
+    for (uint32_t i = 0; i < n; i++) {
+        int drawn = density[i] > 0;
+        x[i] = drawn ? x[i] : 0;
+        y[i] = drawn ? y[i] : 0;
+        z[i] = drawn ? z[i] : 0;
+    }
+}
+
+static int32_t draw(const struct mcr_host *host, struct mcr_context *context, const void *instance, const struct mcr_inputs *inputs,
+                    const struct mcr_points *at, const double *const *number, const struct mcr_directions *out, double *density)
+{
+    double *room = host->scratch(host, context);
+    struct interface s = interface_lanes(at, inputs, room);
+    const double *tangent[3];
+
+    (void)instance;
+    mcr_tangent_lanes(at, room + TANGENT * mcr_padded(at->n), tangent);
+    draw_lanes(at, &s, tangent, number, out->x, out->y, out->z);
+    density = density ? density : room + VALUES * mcr_padded(at->n);
+    density_lanes(at, &s, tangent, out->x, out->y, out->z, density);
+    drop_lanes(at->n, density, out->x, out->y, out->z);
+    return MCR_OK;
+}
+
+static int32_t density(const struct mcr_host *host, struct mcr_context *context, const void *instance, const struct mcr_inputs *inputs,
+                       const struct mcr_points *at, const struct mcr_directions *toward, double *density)
+{
+    double *room = host->scratch(host, context);
+    struct interface s = interface_lanes(at, inputs, room);
+    const double *tangent[3];
+
+    (void)instance;
+    mcr_tangent_lanes(at, room + TANGENT * mcr_padded(at->n), tangent);
+    density_lanes(at, &s, tangent, toward->x, toward->y, toward->z, density);
+    return MCR_OK;
+}
+
+/* Nothing is absorbed at the interface. */
+static int32_t albedo(const struct mcr_host *host, struct mcr_context *context, const void *instance, const struct mcr_inputs *inputs,
+                      const struct mcr_points *at, const struct mcr_colours *out)
+{
+    (void)host, (void)context, (void)instance, (void)inputs;
+    mcr_fill_lanes(at->n, 1, out->r);
+    mcr_fill_lanes(at->n, 1, out->g);
+    mcr_fill_lanes(at->n, 1, out->b);
+    return MCR_OK;
+}
+
+MCR_HIDDEN const struct mcr_material_plugin MCR_ISA_NAME(descriptor) = {
+    .head = {.size = sizeof(struct mcr_material_plugin),
+             .kind = MCR_KIND_MATERIAL,
+             .isa = MCR_ISA,
+             .parameter_count = PARAMETERS,
+             .name = "dielectric",
+             .version = "0.9",
+             .licence = "Apache-2.0",
+             .summary = "glass and other clear matter, smooth or rough, an interior's boundary or a thin wall",
+             .parameters = parameters},
+    .flags = MCR_MATERIAL_STATELESS,
+    .create = create,
+    .traits = traits,
+    .scratch_bytes = scratch_bytes,
+    .evaluate = evaluate,
+    .draw = draw,
+    .density = density,
+    .delta = delta,
+    .albedo = albedo,
+};
+
+MCR_PLUGIN(struct mcr_material_plugin, descriptor);
