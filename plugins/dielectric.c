@@ -348,6 +348,7 @@ static void draw_lanes(const struct mcr_points *at, const struct interface *s, c
         o.z = visible ? o.z : 1;
         m = mcr_ggx_visible(alpha[i], alpha[i], o, u[i], v[i]);
         length = mcr_dot(m, m);
+        visible &= length > 0; /* seen from straight above, the cap's edge is no normal */
         l = mcr_mirrored(o, m, length);
         length = 1 / sqrt(length > 0 ? length : 1);
         m = mcr_vector(m.x * length, m.y * length, m.z * length);

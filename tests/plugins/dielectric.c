@@ -288,8 +288,6 @@ static void test_extremes(void)
 
                 bad += !(isfinite(d) && d >= 0 && isfinite(sheet.colour.r[i]) && sheet.colour.r[i] >= 0);
                 bad += length == 0 ? !delta && (d != 0 || sheet.colour.g[i] != 0) : !(fabs(length - 1) < 64 * U && d > 0);
-                if (!(isfinite(d) && d >= 0) || (length == 0 ? !delta && (d != 0 || sheet.colour.g[i] != 0) : !(fabs(length - 1) < 64 * U && d > 0)))
-                    printf("# n-1 %g a %g c %g thin %d delta %d: %g %g %g len %g d %g g %g i %u\n", n-1, a, c, thin, delta, x, y, z, length-1, d, sheet.colour.g[i], i);
                 heavy += length > 0 && sheet.colour.g[i] * scale > d * (1 + 1e-6);
                 drawn += length > 0;
                 straight += !delta && n == 1 && !thin && z < 0 && fabs(z + c) < 1e-5 && fabs(sheet.colour.g[i] / d - 1) < 1e-3;
