@@ -9,8 +9,8 @@
 #include "cli/layers.h"
 
 enum option_id {
-    OUTPUT, SPP, DEPTH, SEED, THREADS, SAMPLER, SIZE, CROP, PRECISION, ACCEL, ISA, BATCH, REPLICATES, ROULETTE, COMPAT, SET, PLUGIN, LAYERS, REPORT,
-    PROFILE, BITS, EXPOSURE, TONE, QUIET, WERROR, HELP, VERSION
+    OUTPUT, SPP, DEPTH, SEED, THREADS, SAMPLER, SIZE, CROP, PRECISION, ACCEL, ISA, BATCH, REPLICATES, ROULETTE, COMPAT, TIME, TARGET_ERROR,
+    ADAPTIVE, ROUND, SAMPLE_MAP, USE_MAP, SET, PLUGIN, LAYERS, REPORT, PROFILE, BITS, EXPOSURE, TONE, QUIET, WERROR, HELP, VERSION
 };
 
 /* Where an option may stand. */
@@ -36,6 +36,12 @@ static const struct option {
     {REPLICATES, RENDER | CHECK, "--replicates", "N", "for the error"},
     {ROULETTE, RENDER | CHECK, "--roulette", "WORD", "on, off, on(from=N)"},
     {COMPAT, RENDER | CHECK, "--compat", "LIST", "known mistakes"},
+    {TIME, RENDER | CHECK, "--time", "SECONDS", "ends after so long"},
+    {TARGET_ERROR, RENDER | CHECK, "--target-error", "E", "ends when below"},
+    {ADAPTIVE, RENDER | CHECK, "--adaptive", NULL, "more where noisy"},
+    {ROUND, RENDER | CHECK, "--round", "N", "samples at once"},
+    {SAMPLE_MAP, RENDER, "--sample-map", "FILE", "samples of pixels"},
+    {USE_MAP, RENDER, "--use-map", "FILE", "the same again"},
     {SET, RENDER | CHECK | STUDY, "--set", "NAME=VALUE", "replaces a `let`"},
     {PLUGIN, ALL, "--plugin", "FILE", "before all others"},
     {LAYERS, RENDER, "--layers", "LIST", "more, in EXR"},
@@ -51,7 +57,7 @@ static const struct option {
 };
 #define OPTIONS (sizeof table / sizeof *table)
 
-/* In two columns, one below the other: 80 characters and 24 lines are all there is. */
+/* In two columns, one below the other: 80 characters and 32 lines are all there is. */
 void mcr_options_help(FILE *to)
 {
     const size_t rows = (OPTIONS + 1) / 2;
@@ -65,7 +71,7 @@ void mcr_options_help(FILE *to)
         for (size_t i = row; i < OPTIONS; i += rows) {
             char left[24];
             snprintf(left, sizeof left, "%s%s%s", table[i].name, table[i].argument ? " " : "", table[i].argument ? table[i].argument : "");
-            fprintf(to, i + rows < OPTIONS ? "  %-16s %-20s" : "  %-16s %s", left, table[i].text);
+            fprintf(to, i + rows < OPTIONS ? "  %-17s %-20s" : "  %-17s %s", left, table[i].text);
         }
         fputs("\n", to);
     }
@@ -145,6 +151,33 @@ static int take_roulette(struct mcr_overrides *o, const char *text)
     return whole32("--roulette on(from=N)", digits, 0, INT32_MAX - 1, &o->roulette_from, &o->has_roulette_from);
 }
 
+/* Alone, or on, off or on(floor=N) behind a =, as in scenes. */
+static int take_adaptive(struct mcr_overrides *o, const char *text)
+{
+    static const char before[] = "on(floor=";
+    char digits[16];
+    size_t length = text ? strlen(text) : 0, head = sizeof before - 1;
+    o->has_adaptive = 1;
+    o->adaptive = !text || strcmp(text, "off") != 0;
+    o->has_floor = 0;
+    if (!o->adaptive || !text || !strcmp(text, "on"))
+        return 0;
+    if (strncmp(text, before, head) || text[length - 1] != ')' || length - head > sizeof digits)
+        return mcr_usage_error("--adaptive stands alone, or with =on, =off or =on(floor=N), not '%s'", text);
+    snprintf(digits, sizeof digits, "%.*s", (int)(length - head - 1), text + head);
+    return whole32("--adaptive=on(floor=N)", digits, 1, 1048576, &o->floor, &o->has_floor);
+}
+
+/* What a map fixes is not to be said again. */
+static int check_map(const struct mcr_options *options)
+{
+    const struct mcr_overrides *o = &options->overrides;
+    const char *other = o->has_spp ? "--spp" : o->has_time ? "--time" : o->has_target_error ? "--target-error" : o->has_adaptive ? "--adaptive" : NULL;
+    if (options->use_map && other)
+        return mcr_usage_error("--use-map says how many samples each pixel has: %s does not go with it", other);
+    return 0;
+}
+
 static int take_compat(struct mcr_overrides *o, const char *text)
 {
     char reason[256];
@@ -208,6 +241,23 @@ static int take(struct mcr_options *options, const struct option *option, const 
             return MCR_EXIT_USAGE;
         options->variance_layer = o->channel_variance = (options->layers & MCR_LAYER_VARIANCE) != 0;
         o->layer_bytes = mcr_features_bytes(mcr_layers_features(options->layers));
+        return 0;
+    case TIME:
+        o->has_time = 1;
+        return mcr_argument_number("--time", text, 1e-9, 1e9, &o->time);
+    case TARGET_ERROR:
+        o->has_target_error = 1;
+        return mcr_argument_number("--target-error", text, 1e-300, 1e100, &o->target_error);
+    case ADAPTIVE:
+        return take_adaptive(o, text);
+    case ROUND:
+        return whole32("--round", text, 1, 65536, &o->round, &o->has_round);
+    case SAMPLE_MAP:
+        options->sample_map = text;
+        return 0;
+    case USE_MAP:
+        options->use_map = text;
+        o->mapped = 1;
         return 0;
     case SET:
         return take_set(options, text);
@@ -301,15 +351,15 @@ int mcr_options_parse(struct mcr_options *options, const char *command, int argc
             return mcr_usage_error("%s does not go with 'mcrender %s'", option->name, command);
         if (option->argument && !value && ++i == argc)
             return mcr_usage_error("%s expects %s", option->name, option->argument);
-        if (!option->argument && value)
+        if (!option->argument && value && option->id != ADAPTIVE)
             return mcr_usage_error("%s takes no value", option->name);
-        value = value ? value : argv[i];
-        if (option->argument && !*value)
-            return mcr_usage_error("%s expects %s, not an empty text", option->name, option->argument);
+        value = value || !option->argument ? value : argv[i];
+        if (value && !*value)
+            return mcr_usage_error("%s expects %s, not an empty text", option->name, option->argument ? option->argument : "on or off");
         if (take(options, option, value))
             return MCR_EXIT_USAGE;
     }
-    return 0;
+    return check_map(options);
 }
 
 void mcr_options_fini(struct mcr_options *options)

@@ -30,6 +30,8 @@ struct mcr_options {
     const char *report;
     uint32_t layers;                              /* MCR_LAYER_* */
     int variance_layer;                           /* variance is among them */
+    const char *sample_map;                       /* --sample-map: to write; NULL: none */
+    const char *use_map;                          /* --use-map: to follow; NULL: none */
     uint32_t isa;
     uint32_t bits;
     int quiet, werror, profile;

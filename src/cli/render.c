@@ -8,6 +8,7 @@
 #include "base/cpu.h"
 #include "cli/commands.h"
 #include "cli/layers.h"
+#include "cli/map.h"
 #include "cli/report.h"
 #include "cli/stop.h"
 #include "image/format.h"
@@ -43,11 +44,12 @@ static char *default_output(const char *scene)
     return path;
 }
 
-/* Where everything goes: the images in the order of data->output, and behind them the report. */
+/* Where everything goes: the images in the order of data->output, and behind them the report and the sample map. */
 struct targets {
-    struct mcr_target *target[MCR_OUTPUTS_MAX + 1];
-    const char *path[MCR_OUTPUTS_MAX + 1];
+    struct mcr_target *target[MCR_OUTPUTS_MAX + 2];
+    const char *path[MCR_OUTPUTS_MAX + 2];
     uint32_t count;
+    uint32_t map; /* the place of the sample map */
 };
 
 static int is_file(const char *path, const struct stat *status)
@@ -89,10 +91,13 @@ static int targets_open(struct targets *targets, const struct mcr_report_data *d
         status = targets_add(targets, data->output[i].path, 0, &scene);
     if (data->options->report && !status)
         status = targets_add(targets, data->options->report, 1, &scene);
+    targets->map = targets->count;
+    if (data->options->sample_map && !status)
+        status = targets_add(targets, data->options->sample_map, 0, &scene);
     return status;
 }
 
-#define ATTRIBUTES 14
+#define ATTRIBUTES 16
 
 /* What a file says of its picture. */
 struct metadata {
@@ -100,7 +105,7 @@ struct metadata {
     uint32_t more;  /* behind them, of files with layers */
     char *materials; /* owned; NULL */
     struct mcr_attribute attribute[ATTRIBUTES];
-    char hash[20], spp[12], depth[12], seed[24], samples[24], units[12], compat[MCR_COMPAT_TEXT];
+    char hash[20], spp[12], depth[12], seed[24], samples[24], units[12], compat[MCR_COMPAT_TEXT], round[12];
 };
 
 /* In the order of their numbers in the layer `id`, with blanks between them. NULL when memory is short. */
@@ -135,7 +140,11 @@ static void describe(struct metadata *meta, const struct mcr_report_data *data)
     snprintf(meta->spp, sizeof meta->spp, "%u", render->spp);
     snprintf(meta->depth, sizeof meta->depth, "%u", render->depth);
     snprintf(meta->seed, sizeof meta->seed, "%llu", (unsigned long long)render->seed);
-    snprintf(meta->samples, sizeof meta->samples, "%llu", (unsigned long long)data->film->samples);
+    if (data->sampling) /* the mean over pixels */
+        snprintf(meta->samples, sizeof meta->samples, "%.9g", data->sampling->mean);
+    else
+        snprintf(meta->samples, sizeof meta->samples, "%llu", (unsigned long long)data->film->samples);
+    snprintf(meta->round, sizeof meta->round, "%u", render->round);
     snprintf(meta->units, sizeof meta->units, "%u", data->film->units);
     mcr_compat_text(render->compat, meta->compat);
     memcpy(meta->attribute, always, sizeof always);
@@ -144,6 +153,8 @@ static void describe(struct metadata *meta, const struct mcr_report_data *data)
         meta->attribute[meta->count++] = (struct mcr_attribute){"mcrender:biased", "true"};
         meta->attribute[meta->count++] = (struct mcr_attribute){"mcrender:compat", meta->compat};
     }
+    if (data->sampling)
+        meta->attribute[meta->count++] = (struct mcr_attribute){"mcrender:round", meta->round};
     meta->more = 0;
     if (data->options->variance_layer && data->film->units > 1)
         meta->attribute[meta->count + meta->more++] = (struct mcr_attribute){"mcrender:units", meta->units};
@@ -188,6 +199,29 @@ static int write_all(struct mcr_report_data *data, struct targets *targets)
     return status;
 }
 
+/* The map that was asked for. */
+static int write_map(struct mcr_report_data *data, struct targets *targets)
+{
+    struct metadata meta;
+    struct mcr_write_result result;
+    struct mcr_target *target = data->options->sample_map ? targets->target[targets->map] : NULL;
+    struct mcr_image *image = target ? mcr_map_of_film(data->film) : NULL;
+    int status = MCR_EXIT_DONE;
+    if (!target)
+        return status;
+    if (image) {
+        describe(&meta, data);
+        struct mcr_write_options options = {.attribute_count = meta.count, .attribute = meta.attribute};
+        targets->target[targets->map] = NULL;
+        status = mcr_target_write(target, image, &options, &result) ? MCR_EXIT_FAILED : MCR_EXIT_DONE;
+        free(meta.materials);
+    }
+    if (!image || status)
+        fprintf(stderr, "mcrender: error: %s\n", image ? result.error : "out of memory");
+    mcr_image_destroy(image);
+    return image ? status : MCR_EXIT_FAILED;
+}
+
 static int report_all(struct mcr_report_data *data, struct targets *targets)
 {
     char reason[512];
@@ -208,10 +242,24 @@ static int report_all(struct mcr_report_data *data, struct targets *targets)
     return MCR_EXIT_FAILED;
 }
 
-/* Everything between open targets and the exit status. */
-static int render(struct mcr_report_data *data, struct mcr_film *film, struct targets *targets)
+/* What is written of a film that has samples. Returns an exit status. */
+static int save(struct mcr_report_data *data, struct targets *targets)
+{
+    double start = mcr_wall_seconds();
+    int wrote = write_all(data, targets), mapped = write_map(data, targets);
+    data->write_seconds = mcr_wall_seconds() - start;
+    int reported = report_all(data, targets);
+    if (wrote || mapped || reported)
+        return MCR_EXIT_FAILED;
+    return data->stats->interrupted ? MCR_EXIT_INTERRUPTED : MCR_EXIT_DONE;
+}
+
+/* Everything between open targets and the exit status. sampling: NULL where all pixels get spp samples. */
+static int render(struct mcr_report_data *data, struct mcr_film *film, struct mcr_sampling *sampling, struct targets *targets)
 {
     struct mcr_render_stats stats;
+    struct mcr_sampling_result result;
+    struct mcr_director director;
     struct mcr_render_options how = {.isa = data->options->isa, .profile = data->options->profile, .stop = &mcr_stop_asked};
     struct mcr_cell_sink sink = mcr_film_sink(film);
     char reason[512];
@@ -224,6 +272,10 @@ static int render(struct mcr_report_data *data, struct mcr_film *film, struct ta
     mcr_coverage(data->loaded->scene, &data->coverage);
     if (isatty(STDERR_FILENO) && !data->options->quiet)
         how.progress = progress;
+    if (sampling) {
+        director = mcr_sampling_director(sampling);
+        how.director = &director;
+    }
     mcr_stop_catch();
     int status = mcr_render(data->loaded->scene, data->accel, &how, &sink, &stats, reason, sizeof reason);
     if (how.progress)
@@ -236,13 +288,13 @@ static int render(struct mcr_report_data *data, struct mcr_film *film, struct ta
         fputs("mcrender: warning: interrupted before the first sample: nothing is written\n", stderr);
         return MCR_EXIT_INTERRUPTED;
     }
-    double start = mcr_wall_seconds();
-    int wrote = write_all(data, targets);
-    data->write_seconds = mcr_wall_seconds() - start;
-    int reported = report_all(data, targets);
-    if (wrote || reported)
-        return MCR_EXIT_FAILED;
-    return stats.interrupted ? MCR_EXIT_INTERRUPTED : MCR_EXIT_DONE;
+    if (sampling) {
+        mcr_sampling_result(sampling, &result);
+        data->sampling = &result;
+    }
+    status = save(data, targets);
+    data->sampling = NULL;
+    return status;
 }
 
 /*
@@ -256,31 +308,71 @@ static int check_layers(const struct mcr_report_data *data)
     int held = 0;
     if (!data->options->layers)
         return MCR_EXIT_DONE;
+    const int rounds = mcr_render_in_rounds(render);
     for (uint32_t i = 0; i < data->output_count; i++)
         held |= holds_layers(data->output[i].path); /* a format that cannot be written is told when the targets are opened */
     if (!held)
         fprintf(stderr, "mcrender: error: --layers: '%s' cannot hold layers, .exr can\n", data->output[0].path);
+    else if (rounds && data->options->layers & ~(uint32_t)MCR_LAYER_VARIANCE)
+        fputs("mcrender: error: --layers: with time, target_error, adaptive or a sample map there is the layer variance alone\n", stderr);
     else if (!data->options->variance_layer)
         return MCR_EXIT_DONE;
-    else if (scene->sampler->correlated && render->replicates < 2)
+    else if (!rounds && scene->sampler->correlated && render->replicates < 2)
         fputs("mcrender: error: --layers variance: the numbers are correlated, and their variance is known from 2 replicates on (--replicates 2)\n", stderr);
-    else if (!scene->sampler->correlated && render->spp < 2)
+    else if (!rounds && !scene->sampler->correlated && render->spp < 2)
         fputs("mcrender: error: --layers variance: one sample per pixel tells nothing of its variance\n", stderr);
     else
         return MCR_EXIT_DONE;
     return MCR_EXIT_USAGE;
 }
 
-/* From a good scene to the exit status. */
-static int prepare_and_render(struct mcr_report_data *data, struct targets *targets)
+/* Whether there will be a sample map, and a file that can hold it. Returns an exit status. */
+static int check_map(const struct mcr_report_data *data)
+{
+    char reason[512] = "every pixel has spp samples: there is a map with --time, --target-error, --adaptive or --use-map";
+    if (!data->options->sample_map ||
+        (mcr_render_in_rounds(&data->loaded->scene->render) && !mcr_map_check_path(data->options->sample_map, reason, sizeof reason)))
+        return MCR_EXIT_DONE;
+    fprintf(stderr, "mcrender: error: --sample-map: %s\n", reason);
+    return MCR_EXIT_USAGE;
+}
+
+/* The map to follow into *map, NULL where there is none. Returns an exit status. */
+static int read_map(const struct mcr_report_data *data, uint32_t **map)
+{
+    const struct mcr_scene *scene = data->loaded->scene;
+    const char *path = data->options->use_map;
+    char reason[512];
+    *map = path ? mcr_map_read(path, scene->film.x1 - scene->film.x0, scene->film.y1 - scene->film.y0, scene->render.round, reason, sizeof reason) : NULL;
+    if (!path || *map)
+        return MCR_EXIT_DONE;
+    fprintf(stderr, "mcrender: error: --use-map: %s\n", reason);
+    return MCR_EXIT_FAILED;
+}
+
+/* The rules of a render in rounds. NULL when memory is short. */
+static struct mcr_sampling *sampling_of(const struct mcr_scene *scene, struct mcr_film *film, const uint32_t *map)
+{
+    const struct mcr_render_settings *render = &scene->render;
+    struct mcr_sampling_rules rules = {.time = render->time,
+                                       .target = render->target_error,
+                                       .limit = render->limit,
+                                       .round = render->round,
+                                       .least = render->least_rounds,
+                                       .floor = render->floor,
+                                       .adaptive = render->adaptive,
+                                       .by_replicate = (scene->sampler->needs & MCR_NEEDS_PIXEL) != 0,
+                                       .map = map};
+    return mcr_sampling_create(film, &rules);
+}
+
+/* From open targets to the exit status; map: NULL or the rounds of every pixel. */
+static int make_and_render(struct mcr_report_data *data, struct targets *targets, const uint32_t *map)
 {
     struct mcr_loaded_scene *loaded = data->loaded;
     const struct mcr_film_settings *film_settings = &loaded->scene->film;
-    int status = check_layers(data);
-    if (!status)
-        status = targets_open(targets, data);
-    if (status)
-        return status;
+    const struct mcr_render_settings *how = &loaded->scene->render;
+    int status;
     double start = mcr_wall_seconds();
     struct mcr_film *film = mcr_film_create(film_settings->x1 - film_settings->x0, film_settings->y1 - film_settings->y0,
                                             loaded->scene->sampler->correlated);
@@ -289,14 +381,34 @@ static int prepare_and_render(struct mcr_report_data *data, struct targets *targ
     data->features = film && features ? mcr_features_create(film->pixels, features) : NULL;
     data->accel = mcr_accel_create(loaded->arena, loaded->scene, loaded->scene->render.accel);
     data->accel_seconds = mcr_wall_seconds() - start;
-    if (data->accel && film && (data->features || !features) && (!data->options->variance_layer || !mcr_film_keep_channels(film))) {
-        status = render(data, film, targets);
+    int ready = data->accel && film && (data->features || !features) && (!data->options->variance_layer || !mcr_film_keep_channels(film));
+    struct mcr_sampling *sampling = ready && mcr_render_in_rounds(how) ? sampling_of(loaded->scene, film, map) : NULL;
+    if (ready && (sampling || !mcr_render_in_rounds(how))) {
+        status = render(data, film, sampling, targets);
     } else {
         fputs("mcrender: error: out of memory\n", stderr);
         status = MCR_EXIT_FAILED;
     }
     mcr_features_destroy(data->features);
+    mcr_sampling_destroy(sampling);
     mcr_film_destroy(film);
+    return status;
+}
+
+/* From a good scene to the exit status. */
+static int prepare_and_render(struct mcr_report_data *data, struct targets *targets)
+{
+    uint32_t *map = NULL;
+    int status = check_layers(data);
+    if (!status)
+        status = check_map(data);
+    if (!status)
+        status = read_map(data, &map);
+    if (!status)
+        status = targets_open(targets, data);
+    if (!status)
+        status = make_and_render(data, targets, map);
+    free(map);
     return status;
 }
 

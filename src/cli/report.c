@@ -40,6 +40,36 @@ static void text_loaded(FILE *to, const struct mcr_report_data *data)
             mcr_cpu_isa_name(data->options->isa));
 }
 
+static const char *stopped_by(const struct mcr_report_data *data)
+{
+    static const char *const name[] = {[MCR_STOPPED_SPP] = "spp",           [MCR_STOPPED_TIME] = "time", [MCR_STOPPED_TARGET] = "target_error",
+                                       [MCR_STOPPED_MAP] = "map", [MCR_STOPPED_MOST] = "most"};
+    return data->sampling->stopped ? name[data->sampling->stopped] : "interruption";
+}
+
+/* Rounds: how many samples pixels have, and why they are no more. */
+static void text_sampling(FILE *to, const struct mcr_report_data *data)
+{
+    const struct mcr_render_settings *render = &data->loaded->scene->render;
+    const struct mcr_sampling_result *sampling = data->sampling;
+    if (!sampling)
+        return;
+    fprintf(to, "sampling  %s%llu to %llu samples per pixel, %.6g in the mean, by rounds of %u", render->adaptive ? "adaptive: " : "",
+            (unsigned long long)sampling->least, (unsigned long long)sampling->most, sampling->mean, render->round);
+    if (sampling->scouts > 0)
+        fprintf(to, "; %.4g more as scouts", sampling->scouts);
+    fprintf(to, "\nstopped   by %s", stopped_by(data));
+    if (render->time > 0)
+        fprintf(to, "; time %.6g s", render->time);
+    if (render->limit)
+        fprintf(to, "; spp %u", render->limit);
+    if (render->target_error > 0 && data->figures.known)
+        fprintf(to, "; target error %.6g: with 95 %% confidence the error is below %.4g", render->target_error, data->figures.relative_bound);
+    else if (render->target_error > 0)
+        fprintf(to, "; target error %.6g: the error is unknown", render->target_error);
+    fputs("\n", to);
+}
+
 static void text_error(FILE *to, const struct mcr_report_data *data)
 {
     const struct mcr_film_figures *figures = &data->figures;
@@ -48,7 +78,8 @@ static void text_error(FILE *to, const struct mcr_report_data *data)
                 figures->relative_error, figures->luminance, figures->standard_error, figures->mean_variance, efficiency(data));
     else
         fprintf(to, "error     unknown: %s; mean luminance %.6g\n",
-                data->film->correlated ? "the numbers are correlated, and there are fewer than two replicates (render { replicates 2 })"
+                data->film->correlated && data->sampling ? "the numbers are correlated, and there are fewer than two rounds"
+                : data->film->correlated ? "the numbers are correlated, and there are fewer than two replicates (render { replicates 2 })"
                                        : "one sample per pixel tells nothing of its variance",
                 figures->luminance);
 }
@@ -59,12 +90,16 @@ void mcr_report_text(FILE *to, const struct mcr_report_data *data)
     const struct mcr_render_settings *render = &scene->render;
     const struct mcr_render_stats *stats = data->stats;
     double seconds = stats->wall_seconds;
-    fprintf(to, "scene     %s: %ux%u, %u spp, depth %u, seed %llu\n", data->options->scene, scene->film.x1 - scene->film.x0,
-            scene->film.y1 - scene->film.y0, render->spp, render->depth, (unsigned long long)render->seed);
-    fprintf(to, "sampler   %s%s; numbers %s%s; roulette %s\n", scene->sampler->expression, scene->sampler_chosen ? " (chosen for this scene, which names none)" : "", data->film->correlated ? "correlated" : "independent",
-            data->film->correlated && render->replicates < 2 ? ", one replicate" : "", render->roulette ? "on" : "off");
+    fprintf(to, "scene     %s: %ux%u, ", data->options->scene, scene->film.x1 - scene->film.x0, scene->film.y1 - scene->film.y0);
+    if (!data->sampling)
+        fprintf(to, "%u spp, ", render->spp);
+    fprintf(to, "depth %u, seed %llu\n", render->depth, (unsigned long long)render->seed);
+    fprintf(to, "sampler   %s%s; numbers %s%s; roulette %s\n", scene->sampler->expression,
+            scene->sampler_chosen ? " (chosen for this scene, which names none)" : "", data->film->correlated ? "correlated" : "independent",
+            data->film->correlated && render->replicates < 2 && !data->sampling ? ", one replicate" : "", render->roulette ? "on" : "off");
     if (data->film->correlated && render->replicates > 1)
         fprintf(to, "          %u replicates of %u samples\n", render->replicates, render->spp / render->replicates);
+    text_sampling(to, data);
     if (scene->film.exposure != 0 || scene->film.tone.curve != MCR_TONE_LINEAR) {
         char tone[MCR_TONE_TEXT];
         mcr_tone_text(&scene->film.tone, tone);
@@ -120,7 +155,14 @@ void mcr_report_warnings(FILE *to, const struct mcr_report_data *data)
     if (stats->not_finite)
         fprintf(to, "mcrender: warning: %llu samples were not finite and count as black; the first: pixel %u,%u sample %llu\n",
                 (unsigned long long)stats->not_finite, stats->not_finite_x, stats->not_finite_y, (unsigned long long)stats->not_finite_sample);
-    if (stats->interrupted)
+    const struct mcr_render_settings *render = &data->loaded->scene->render;
+    if (data->sampling && render->target_error > 0 && data->sampling->stopped != MCR_STOPPED_TARGET)
+        fprintf(to, "mcrender: warning: the target error %.6g is not reached: stopped by %s\n", render->target_error, stopped_by(data));
+    if (data->sampling && render->adaptive && !data->sampling->distributed && !stats->interrupted)
+        fprintf(to, "mcrender: warning: adaptive had nothing to distribute: every pixel has its floor alone\n");
+    if (stats->interrupted && data->sampling)
+        fprintf(to, "mcrender: warning: interrupted after %llu samples per pixel or more\n", (unsigned long long)data->film->samples);
+    else if (stats->interrupted)
         fprintf(to, "mcrender: warning: interrupted after %llu of %u spp\n", (unsigned long long)data->film->samples, data->loaded->scene->render.spp);
 }
 
@@ -159,6 +201,36 @@ static void json_scene(struct mcr_json_writer *json, const struct mcr_report_dat
     mcr_json_text(json, "instruction_set", mcr_cpu_isa_name(data->options->isa));
     mcr_json_unsigned(json, "threads", data->stats->threads);
     mcr_json_unsigned(json, "batch", data->stats->batch);
+    mcr_json_end(json);
+}
+
+static void json_sampling(struct mcr_json_writer *json, const struct mcr_report_data *data)
+{
+    const struct mcr_render_settings *render = &data->loaded->scene->render;
+    const struct mcr_sampling_result *sampling = data->sampling;
+    if (!sampling)
+        return;
+    mcr_json_begin_object(json, "sampling");
+    mcr_json_text(json, "stopped_by", stopped_by(data));
+    mcr_json_boolean(json, "adaptive", render->adaptive);
+    mcr_json_unsigned(json, "round", render->round);
+    mcr_json_unsigned(json, "samples_min", sampling->least);
+    mcr_json_number(json, "samples_mean", sampling->mean);
+    mcr_json_unsigned(json, "samples_max", sampling->most);
+    mcr_json_number(json, "scout_samples", sampling->scouts);
+    mcr_json_unsigned(json, "steps", sampling->steps);
+    if (render->limit)
+        mcr_json_unsigned(json, "spp_limit", render->limit);
+    if (render->time > 0)
+        mcr_json_number(json, "time_limit", render->time);
+    if (render->target_error > 0) {
+        mcr_json_number(json, "target_error", render->target_error);
+        mcr_json_boolean(json, "target_reached", sampling->stopped == MCR_STOPPED_TARGET);
+    }
+    if (data->figures.known) {
+        mcr_json_number(json, "confidence", 0.95);
+        mcr_json_number(json, "error_bound", data->figures.relative_bound);
+    }
     mcr_json_end(json);
 }
 
@@ -254,6 +326,7 @@ int mcr_report_json(struct mcr_target *target, const struct mcr_report_data *dat
         mcr_json_begin_object(json, NULL);
         mcr_json_text(json, "mcrender", PACKAGE_VERSION);
         json_scene(json, data);
+        json_sampling(json, data);
         json_loaded(json, data);
         json_work(json, data);
         json_image(json, data);

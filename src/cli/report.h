@@ -6,7 +6,7 @@
 #include "cli/load.h"
 #include "core/core.h"
 #include "film/features.h"
-#include "film/film.h"
+#include "film/sampling.h"
 
 struct mcr_report_output {
     const char *path;
@@ -22,6 +22,7 @@ struct mcr_report_data {
     struct mcr_features *features; /* NULL: no layer needs them */
     const struct mcr_render_stats *stats;
     const struct mcr_film *film;
+    const struct mcr_sampling_result *sampling; /* of a render in rounds, or NULL */
     struct mcr_film_figures figures;
     struct mcr_coverage coverage;
     double accel_seconds, write_seconds;

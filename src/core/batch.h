@@ -164,6 +164,8 @@ struct mcr_core {
     int needs_pixel;                /* one of them asks for the pixel */
     struct mcr_host host;
     const struct mcr_render_options *options;
+    const struct mcr_stages *plain; /* where `stages` begins paths by a task (directed.c): the stages of the instruction set */
+    const struct mcr_task *task;    /* of the running pass; NULL without a director */
 };
 
 /* Points of one batch, sorted. */

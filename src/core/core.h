@@ -33,6 +33,37 @@ enum mcr_stage {
 };
 extern const char *const mcr_stage_name[MCR_STAGE_COUNT];
 
+#define MCR_TASK_CELLS 65536u /* cells of a task at most */
+
+/* One replicate of one pixel, or with independent numbers the next of its samples. */
+struct mcr_task_entry {
+    uint32_t pixel;                          /* of the crop, row by row from the top */
+    uint32_t first;                          /* the number of its first sample within the replicate */
+    uint64_t replicate;
+};
+
+/* What a director asks for: `cells` cells of `cell_samples` samples for each entry. A pixel may be among the entries several times. */
+struct mcr_task {
+    const struct mcr_task_entry *entry;      /* the director's, until it is asked for the next task */
+    uint32_t count, cells, cell_samples;     /* count * cells <= MCR_TASK_CELLS; cell_samples <= MCR_CELL_SAMPLES */
+    uint32_t planned;                        /* samples of a replicate */
+    int incomplete;                          /* after it pixels are still without any sample: an interruption waits */
+    double begin, end;                       /* for the progress: how much of all is done before and after it, in [0,1] */
+};
+
+/*
+ * Who says what is rendered next, where that is not `spp` samples of every pixel. It is asked between passes on the main thread, and knows what
+ * finished passes have shown: threads, batches and instruction sets cannot matter.
+ */
+struct mcr_director {
+    void *data;
+    /* 1: *task is to be rendered; 0: all is done; -1: memory is short. seconds: since the rendering began. */
+    int (*next)(void *data, double seconds, struct mcr_task *task);
+    /* Its results: cell b of entry e in cell[b * count + e]; channels NULL unless asked for. Returns 0, or -1 when memory is short. */
+    int (*take)(void *data, const struct mcr_task *task, const struct mcr_cell *cell, const struct mcr_cell_channels *channels);
+    int channels;                            /* the channels' moments are asked for */
+};
+
 struct mcr_render_options {
     uint32_t isa;                            /* MCR_ISA_*, not above what the processor has */
     int profile;                             /* time the stages */
@@ -40,6 +71,7 @@ struct mcr_render_options {
     const volatile sig_atomic_t *stop;       /* not 0: end after the running pass. May be NULL */
     void (*progress)(void *data, double done, double seconds); /* done in [0,1]; called now and then on the main thread. May be NULL */
     void *progress_data;
+    const struct mcr_director *director;     /* NULL: spp samples of every pixel. Else the sink is not used, and may be NULL */
 };
 
 struct mcr_render_stats {

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
  * A pass: the next samples of every pixel, cut into cells, which threads take by jobs. Cell c belongs to pixel c % pixels of the crop and holds the
- * samples first + (c / pixels) * cell_samples on. Private to src/core.
+ * samples first + (c / pixels) * cell_samples on; with a director c % pixels is an entry of the pass's task instead (core.h). Private to src/core.
  */
 #ifndef MCR_CORE_PASS_H
 #define MCR_CORE_PASS_H
@@ -28,6 +28,9 @@ struct mcr_pass {
     void (*tick)(void *data, const struct mcr_pass *pass); /* called by thread 0 between steps; may be NULL */
     void *tick_data;
 };
+
+/* directed.c: stages that begin paths as the running task says; `to` is filled from core->stages, which goes to core->plain. */
+void mcr_directed_stages(struct mcr_core *core, struct mcr_stages *to);
 
 /* loop.c: takes jobs of the pass until there are none. thread: 0 is the main one. */
 void mcr_batch_run(struct mcr_batch *batch, struct mcr_pass *pass, uint32_t thread);

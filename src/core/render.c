@@ -16,7 +16,7 @@
 /* Rays in a batch by default: their arrays stay in the second-level cache (measured: `make bench`). */
 #define DEFAULT_BATCH 1024u
 /* Cells of a pass at least, where the pixels are few: a million samples, so that threads have enough to take. */
-#define PASS_CELLS 65536u
+#define PASS_CELLS MCR_TASK_CELLS
 
 const char *const mcr_stage_name[MCR_STAGE_COUNT] = {"camera",  "hit",   "sort",     "surface", "emission", "numbers",
                                                      "sampler", "light", "material", "scatter", "compact",  "film"};
@@ -30,6 +30,8 @@ struct render {
     uint64_t samples_before;  /* of earlier passes */
     uint64_t samples_total;
     double start, last_tick;
+    double begin, end;        /* directed: the running task's part of all */
+    struct mcr_stages directed;
 };
 
 static const struct mcr_stages *stages_of(uint32_t isa)
@@ -107,8 +109,11 @@ static void tick(void *data, const struct mcr_pass *pass)
     if (seconds - render->last_tick < 0.1)
         return;
     render->last_tick = seconds;
-    uint64_t done = render->samples_before + atomic_load_explicit(&pass->done, memory_order_relaxed) * pass->cell_samples;
-    options->progress(options->progress_data, (double)done / (double)render->samples_total, seconds);
+    uint64_t cells = atomic_load_explicit(&pass->done, memory_order_relaxed);
+    double done = (double)(render->samples_before + cells * pass->cell_samples) / (double)render->samples_total;
+    if (options->director)
+        done = render->begin + (render->end - render->begin) * ((double)cells / (double)pass->cells);
+    options->progress(options->progress_data, done, seconds);
 }
 
 static void work(void *argument, uint32_t thread)
@@ -135,9 +140,15 @@ static void collect(struct render *render, struct mcr_render_stats *stats)
             stats->stage_seconds[s] += batch->stage_seconds[s];
         if (batch->not_finite && batch->not_finite_cell < cell && !before) {
             cell = batch->not_finite_cell;
-            stats->not_finite_x = film->x0 + (uint32_t)(cell % pass->pixels % (film->x1 - film->x0));
-            stats->not_finite_y = film->y0 + (uint32_t)(cell % pass->pixels / (film->x1 - film->x0));
-            stats->not_finite_sample = pass->first + cell / pass->pixels * pass->cell_samples + batch->not_finite_sample;
+            const struct mcr_task *task = render->core.task;
+            uint64_t pixel = cell % pass->pixels, first = pass->first;
+            if (task) {
+                first = task->entry[pixel].first;
+                pixel = task->entry[pixel].pixel;
+            }
+            stats->not_finite_x = film->x0 + (uint32_t)(pixel % (film->x1 - film->x0));
+            stats->not_finite_y = film->y0 + (uint32_t)(pixel / (film->x1 - film->x0));
+            stats->not_finite_sample = first + cell / pass->pixels * pass->cell_samples + batch->not_finite_sample;
         }
         batch->camera_rays = batch->bounce_rays = batch->shadow_rays = batch->crossings = batch->scatterings = batch->not_finite = 0;
         memset(batch->stage_seconds, 0, sizeof batch->stage_seconds);
@@ -152,9 +163,8 @@ static int hand_on(const struct mcr_pass *pass, const struct mcr_cell_sink *sink
     return !status && pass->features ? sink->add_features(sink->features, pass->features + first, count) : status;
 }
 
-/* Runs one pass of `blocks` cells a pixel and hands them on. Returns 0, or -1 with pass.error set. */
-static int run_pass(struct render *render, const struct mcr_cell_sink *sink, uint64_t first, uint32_t cell_samples, uint64_t blocks,
-                    struct mcr_render_stats *stats)
+/* Renders the cells of a pass. Returns 0, or -1 with pass.error set. */
+static int run_cells(struct render *render, uint64_t first, uint32_t cell_samples, uint64_t blocks)
 {
     struct mcr_pass *pass = &render->pass;
     pass->first = first;
@@ -163,7 +173,15 @@ static int run_pass(struct render *render, const struct mcr_cell_sink *sink, uin
     atomic_store(&pass->next, 0);
     atomic_store(&pass->done, 0);
     mcr_threads_run(render->threads, work, render);
-    if (atomic_load(&pass->failed))
+    return atomic_load(&pass->failed) ? -1 : 0;
+}
+
+/* Runs one pass of `blocks` cells a pixel and hands them on. Returns 0, or -1 with pass.error set. */
+static int run_pass(struct render *render, const struct mcr_cell_sink *sink, uint64_t first, uint32_t cell_samples, uint64_t blocks,
+                    struct mcr_render_stats *stats)
+{
+    struct mcr_pass *pass = &render->pass;
+    if (run_cells(render, first, cell_samples, blocks))
         return -1;
     for (uint64_t b = 0; b < blocks; b++)
         if (hand_on(pass, sink, b * pass->pixels, cell_samples)) {
@@ -212,6 +230,40 @@ static int run_all(struct render *render, const struct mcr_scene *scene, const s
     return 0;
 }
 
+/* One pass for each task, as long as the director has any. */
+static int run_directed(struct render *render, const struct mcr_director *director, struct mcr_render_stats *stats)
+{
+    const struct mcr_render_options *options = render->core.options;
+    struct mcr_pass *pass = &render->pass;
+    struct mcr_task task = {.incomplete = 0};
+    mcr_directed_stages(&render->core, &render->directed);
+    render->core.task = &task;
+    for (;;) {
+        if (options->stop && *options->stop && !task.incomplete) {
+            stats->interrupted = 1;
+            return 0;
+        }
+        int more = director->next(director->data, mcr_wall_seconds() - render->start, &task);
+        if (!more)
+            return 0;
+        pass->pixels = task.count;
+        pass->planned = task.planned;
+        if (more > 0) /* for number sources that look at pixels: their tasks are of one replicate */
+            pass->replicate_key = mcr_replicate_key(render->core.scene->render.seed, task.entry[0].replicate);
+        render->begin = task.begin;
+        render->end = task.end;
+        if (more > 0 && run_cells(render, 0, task.cell_samples, task.cells))
+            return -1;
+        if (more < 0 || director->take(director->data, &task, pass->cell, pass->channels)) {
+            snprintf(pass->error, sizeof pass->error, "out of memory");
+            return -1;
+        }
+        collect(render, stats);
+        stats->passes++;
+        stats->samples += pass->cells * task.cell_samples;
+    }
+}
+
 static int batches_create(struct render *render)
 {
     render->batch = calloc(render->threads, sizeof *render->batch);
@@ -236,18 +288,20 @@ int mcr_render(const struct mcr_scene *scene, const struct mcr_accel *accel, con
     render.start = mcr_wall_seconds();
     pass->core = &render.core;
     pass->pixels = (uint64_t)(film->x1 - film->x0) * (film->y1 - film->y0);
-    uint64_t cells = pass->pixels > PASS_CELLS ? pass->pixels : PASS_CELLS;
+    const struct mcr_director *director = options->director;
+    const int channels = director ? director->channels : sink->add_channels != NULL;
+    uint64_t cells = pass->pixels > PASS_CELLS && !director ? pass->pixels : PASS_CELLS;
     pass->cell = calloc(cells, sizeof *pass->cell);
-    pass->channels = sink->add_channels ? calloc(cells, sizeof *pass->channels) : NULL;
+    pass->channels = channels ? calloc(cells, sizeof *pass->channels) : NULL;
     pass->features = options->features ? calloc(cells, sizeof *pass->features) : NULL;
-    int short_of_memory = !render.arena || !pass->cell || (sink->add_channels && !pass->channels) || (options->features && !pass->features);
+    int short_of_memory = !render.arena || !pass->cell || (channels && !pass->channels) || (options->features && !pass->features);
     pass->tick = options->progress ? tick : NULL;
     pass->tick_data = &render;
     render.samples_total = pass->pixels * scene->render.spp;
     if (short_of_memory || prepare(&render, scene, accel, options) || batches_create(&render)) {
         snprintf(error, length, "out of memory");
     } else {
-        status = run_all(&render, scene, sink, stats);
+        status = director ? run_directed(&render, director, stats) : run_all(&render, scene, sink, stats);
         if (status)
             snprintf(error, length, "%s", pass->error);
     }

@@ -10,13 +10,16 @@
  * Variance. With independent numbers each sample is a unit, with correlated ones each replicate: the units' central second moment of luminance
  * is merged pair by pair (Chan, Golub and LeVeque 1983). With fewer than two units the variance is unknown. R, G and B have moments of their own
  * where they are asked for (mcr_film_keep_channels); without, nothing is stored or computed for them.
+ *
+ * All pixels have the same samples (mcr_film_add), or each its own number of replicates of one size (mcr_film_by_pixel, mcr_film_take): a pixel's bits
+ * depend on how many it has, and not on what others have or when they came.
  */
 #ifndef MCR_FILM_FILM_H
 #define MCR_FILM_FILM_H
 
 #include <stdint.h>
 
-#include "core/cell.h"
+#include "core/core.h"
 
 #define MCR_FILM_RADIX 16u
 #define MCR_FILM_LEVELS 9u /* 16 * 16^8 samples: more than 2^32 */
@@ -35,8 +38,13 @@ struct mcr_film {
     int correlated;         /* units are replicates */
     int channels;           /* the variance of R, G and B is kept, too */
     uint32_t replicates;
-    uint64_t samples;       /* a pixel, so far */
-    uint32_t units;         /* finished samples or replicates */
+    uint64_t samples;       /* a pixel, so far; the least that any has */
+    uint32_t units;         /* finished samples or replicates; the least that any pixel has */
+    /* by pixel: */
+    uint32_t *cells;        /* so far; NULL: all pixels have the same samples */
+    uint32_t replicate_cells, cell_samples; /* cells of a replicate, samples of a cell */
+    double *part_mean, *part_moment; /* over estimates of the units' variance from parts: cells, or pairs of replicates */
+    double *part_open;               /* correlated: the mean of a replicate that waits for its pair */
     struct mcr_film_level level[MCR_FILM_LEVELS];
     /* correlated: */
     uint64_t replicate_samples;
@@ -64,12 +72,24 @@ int mcr_film_add_channels(struct mcr_film *film, const struct mcr_cell *cell, co
 /* The replicate is complete: its mean becomes a unit. Only for correlated films. */
 void mcr_film_end_replicate(struct mcr_film *film);
 
+/*
+ * Instead of mcr_film_add, before the first cell: every pixel has its own number of replicates, each of so many cells of so many samples. Returns 0,
+ * or -1 when memory is short.
+ */
+int mcr_film_by_pixel(struct mcr_film *film, uint32_t cells, uint32_t cell_samples);
+/* Adds what a director's task brought. Returns 0, or -1 when memory is short: the film is of no use then. */
+int mcr_film_take(struct mcr_film *film, const struct mcr_task *task, const struct mcr_cell *cell, const struct mcr_cell_channels *channels);
+/* Samples that a pixel has. */
+uint64_t mcr_film_samples(const struct mcr_film *film, uint64_t pixel);
+
 /* The mean radiance of every pixel: rgb[3 * pixel]. Black where there is no sample. */
 void mcr_film_mean(const struct mcr_film *film, double *rgb);
 /* The variance of every pixel's mean luminance. Returns 0, or -1 if it is unknown (fewer than 2 units): out is untouched then. */
 int mcr_film_variance(const struct mcr_film *film, double *out);
 /* The variance of every pixel's mean in each channel: rgb[3 * pixel]. Returns 0, or -1 if it is unknown, or was not asked for: rgb is untouched then. */
 int mcr_film_channel_variance(const struct mcr_film *film, double *rgb);
+
+#define MCR_FILM_BOUND 1.6448536269514722 /* standard errors that 95 % of normal errors stay below */
 
 /* Figures over the whole picture. */
 struct mcr_film_figures {
@@ -79,6 +99,8 @@ struct mcr_film_figures {
     double standard_error;             /* of the mean luminance */
     double relative_error;             /* root of the mean variance over the mean luminance; 0 for a black picture */
     double sample_variance;            /* luminance variance of one sample, mean over pixels; for replicates: of the mean of one, times its samples */
+    double mean_variance_error;        /* of a film by pixel: standard error of mean_variance; else 0 */
+    double relative_bound;             /* what the relative error is below with 95 % confidence: from mean_variance + 1.645 of its standard errors */
 };
 /* Returns 0, or -1 when memory is short. */
 int mcr_film_figures(const struct mcr_film *film, struct mcr_film_figures *figures);

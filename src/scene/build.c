@@ -160,6 +160,7 @@ static void build_all(struct mcr_build *build, const struct mcr_item *root)
     mcr_build_camera(build, camera);
     mcr_build_film(build, single(build, root, "film"));
     mcr_build_render(build, single(build, root, "render"));
+    mcr_build_film_in_rounds(build);
     mcr_build_textures(build, root);
     if (build->short_of_memory)
         return;

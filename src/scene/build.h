@@ -120,6 +120,8 @@ const char *mcr_value_described(const struct mcr_value *value, char text[80]);
 /* block NULL: only defaults. */
 void mcr_build_camera(struct mcr_build *build, const struct mcr_item *block);
 void mcr_build_film(struct mcr_build *build, const struct mcr_item *block);
+/* After `render`: whether the film's memory is enough for rounds, too. */
+void mcr_build_film_in_rounds(struct mcr_build *build);
 void mcr_build_render(struct mcr_build *build, const struct mcr_item *block);
 /* After everything else: needs has_lights. */
 void mcr_build_sampler(struct mcr_build *build);

@@ -161,3 +161,15 @@ void mcr_build_film(struct mcr_build *build, const struct mcr_item *block)
         place = settings.value[FILM_SIZE]->place;
     check_crop(build, place, option);
 }
+
+void mcr_build_film_in_rounds(struct mcr_build *build)
+{
+    const struct mcr_film_settings *film = &build->scene->film;
+    uint64_t pixels = (uint64_t)(film->x1 - film->x0) * (film->y1 - film->y0), bytes = MCR_FILM_BYTES_PER_PIXEL + MCR_FILM_ROUND_BYTES_PER_PIXEL;
+    if (build->overrides && build->overrides->channel_variance)
+        bytes += MCR_FILM_CHANNEL_BYTES_PER_PIXEL;
+    if (mcr_render_in_rounds(&build->scene->render) && pixels > MCR_FILM_MEMORY_LIMIT / bytes)
+        mcr_error(build, (struct mcr_place){ 0 },
+                  "a film of %u x %u pixels needs %llu MiB in rounds, at most 1024 MiB are allowed: render it in parts with 'crop'",
+                  film->x1 - film->x0, film->y1 - film->y0, (unsigned long long)((pixels * bytes + (1 << 20) - 1) >> 20));
+}

@@ -26,6 +26,26 @@ static void read_roulette(struct mcr_build *build, const struct mcr_settings *se
     }
 }
 
+/* adaptive on, off or on(floor=N). */
+static void read_adaptive(struct mcr_build *build, const struct mcr_settings *settings)
+{
+    struct mcr_render_settings *render = &build->scene->render;
+    const struct mcr_value *value = settings->value[RENDER_ADAPTIVE];
+    struct mcr_settings arguments;
+    double floor = mcr_adaptive_word.setting[0].fallback[0];
+    render->floor = (uint32_t)floor;
+    if (!value || (value->kind == MCR_VALUE_NAME && strcmp(value->text, "off") == 0))
+        return;
+    if ((value->kind != MCR_VALUE_NAME && value->kind != MCR_VALUE_CALL) || strcmp(value->text, "on") != 0) {
+        mcr_wrong_kind(build, value, "adaptive", "render", mcr_word_form(MCR_WORD_ADAPTIVE));
+        return;
+    }
+    render->adaptive = 1;
+    mcr_settings_match_call(build, value, &mcr_adaptive_word, &arguments);
+    if (mcr_read_number(build, &arguments, 0, &floor) == 0)
+        render->floor = (uint32_t)floor;
+}
+
 /* Choices that the language has but this build has not. */
 static void check_available(struct mcr_build *build, const struct mcr_settings *settings, uint32_t index, double last, double number)
 {
@@ -79,6 +99,57 @@ static void override(struct mcr_build *build)
     }
 }
 
+/* Over the scene: rules of the command line, a sample map in the place of all, or none. */
+static void override_rules(struct mcr_build *build)
+{
+    const struct mcr_overrides *over = build->overrides;
+    struct mcr_render_settings *render = &build->scene->render;
+    if (!over)
+        return;
+    if (over->has_time)
+        render->time = over->time;
+    if (over->has_target_error)
+        render->target_error = over->target_error;
+    if (over->has_adaptive)
+        render->adaptive = over->adaptive;
+    if (over->has_floor)
+        render->floor = over->floor;
+    if (over->has_round)
+        render->round = over->round;
+    render->mapped = over->mapped;
+    if (over->mapped || over->plain)
+        render->time = render->target_error = render->adaptive = 0;
+}
+
+/*
+ * Which rounds there are, and whether spp limits them: it does where it is said beside the rules or over them. A rule of the command line is not held up
+ * by the scene's spp, nor one of the scene by what spp is when nobody says it. To distribute samples without any other rule is to distribute spp of them.
+ */
+static void settle_rules(struct mcr_build *build, const struct mcr_settings *settings)
+{
+    const struct mcr_overrides *over = build->overrides;
+    struct mcr_render_settings *render = &build->scene->render;
+    const struct mcr_value *round = settings->value[RENDER_ROUND];
+    struct mcr_place place = round && !(over && over->has_round) ? round->place : (struct mcr_place){ 0 };
+    int above = over && ((over->has_time && over->time > 0) || (over->has_target_error && over->target_error > 0));
+    int said = (over && over->has_spp) || (settings->value[RENDER_SPP] && !above), open = render->time > 0 || render->target_error > 0;
+    render->least_rounds = build->replicates ? build->replicates : 1;
+    if (!mcr_render_in_rounds(render))
+        return;
+    render->limit = !render->mapped && (said || !open) ? render->spp : 0;
+    if (render->limit && render->limit < render->round && !round && !(over && over->has_round))
+        render->round = render->limit; /* nobody asked for more */
+    if (render->round > 16 && render->round % 16 != 0)
+        mcr_error(build, place, "a round of %u samples cannot be cut into cells of 16, expected up to 16, or a multiple of 16", render->round);
+    if (!render->limit)
+        return;
+    if (render->limit < render->round)
+        mcr_error(build, place, "spp %u is less than one round of %u samples, expected a smaller 'round' (--round)", render->limit, render->round);
+    else if (render->limit / render->round < render->least_rounds)
+        mcr_error(build, build->replicates_place, "%u replicates are rounds of %u samples and need at least %llu samples per pixel, spp is %u",
+                  render->least_rounds, render->round, (unsigned long long)render->least_rounds * render->round, render->limit);
+}
+
 /* Roulette weights paths up, so that more of them are clamped. The founding study has none: it is off with `clamp`, unless it was asked for. */
 static void clamp_roulette(struct mcr_build *build, int in_scene)
 {
@@ -119,12 +190,22 @@ void mcr_build_render(struct mcr_build *build, const struct mcr_item *block)
     build->replicates = (uint32_t)number_of(build, &settings, RENDER_REPLICATES);
     if (settings.value[RENDER_REPLICATES])
         build->replicates_place = settings.value[RENDER_REPLICATES]->place;
+    if (mcr_read_number(build, &settings, RENDER_TIME, &number) == 0)
+        render->time = number;
+    if (mcr_read_number(build, &settings, RENDER_TARGET_ERROR, &number) == 0)
+        render->target_error = number;
+    render->round = (uint32_t)number_of(build, &settings, RENDER_ROUND);
+    read_adaptive(build, &settings);
     build->sampler = settings.value[RENDER_SAMPLER];
     if (build->sampler)
         build->scene->sampler_place = build->sampler->place;
     override(build);
+    override_rules(build);
+    settle_rules(build, &settings);
     clamp_roulette(build, settings.value[RENDER_ROULETTE] != NULL);
-    if (build->replicates > render->spp) {
+    if (mcr_render_in_rounds(render)) {
+        build->replicates = 1; /* rounds take their place */
+    } else if (build->replicates > render->spp) {
         mcr_error(build, build->replicates_place, "%u replicates need at least %u samples per pixel, spp is %u", build->replicates,
                   build->replicates, render->spp);
         build->replicates = 0;
@@ -175,7 +256,7 @@ static int check_lights(struct mcr_build *build, const struct mcr_sampler *sampl
 
 static uint32_t planned(const struct mcr_render_settings *render)
 {
-    return render->spp / render->replicates + (render->spp % render->replicates != 0);
+    return mcr_render_in_rounds(render) ? render->round : render->spp / render->replicates + (render->spp % render->replicates != 0);
 }
 
 /* Makes the sampler for as many samples as a replicate has; -1 after an error. */

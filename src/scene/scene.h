@@ -153,7 +153,21 @@ struct mcr_render_settings {
     uint32_t compat;        /* MCR_COMPAT_* in force: what finds nothing to act on in this scene is not among them */
     int mis_power;          /* techniques are combined by the power heuristic instead of the balance heuristic */
     double background[3];
+    double time;            /* seconds after which it is enough; 0: no such rule */
+    double target_error;    /* relative error at which it is enough; 0: no such rule */
+    int adaptive;           /* more samples where more noise is */
+    uint32_t floor;         /* then: samples of each pixel at least */
+    int mapped;             /* a sample map says how many samples each pixel has */
+    uint32_t round;         /* samples of a round, where one of these is in force */
+    uint32_t limit;         /* spp where it limits these: the mean over the picture at most; 0: they have no limit */
+    uint32_t least_rounds;  /* `replicates` where it is set, else 1 */
 };
+
+/* Whether rounds of samples are rendered as needed, instead of spp samples of every pixel. */
+static inline int mcr_render_in_rounds(const struct mcr_render_settings *render)
+{
+    return render->time > 0 || render->target_error > 0 || render->adaptive || render->mapped;
+}
 
 struct mcr_scene {
     struct mcr_arena *arena;
@@ -197,6 +211,12 @@ struct mcr_overrides {
     int has_roulette_from;
     uint32_t roulette_from;
     uint32_t layer_bytes; /* a pixel, that layers of features take: count for the film's memory */
+    int has_time, has_target_error, has_adaptive, has_floor, has_round;
+    double time, target_error; /* 0: off */
+    int adaptive;
+    uint32_t floor, round;
+    int mapped;           /* there is a sample map: `spp` and the rules of the scene are passed over */
+    int plain;            /* spp samples of every pixel, whatever else the scene says */
     int channel_variance; /* the film is to keep the channels' variances: counts for its memory */
 };
 

@@ -80,6 +80,10 @@ static const struct mcr_parameter roulette[] = {
     ROW("from", MCR_TYPE_INTEGER, 0, "", 0, 2147483646, 8, 0, 0, "The first scattering event, counted from 0, at which it may end a path."),
 };
 
+static const struct mcr_parameter adaptive[] = {
+    ROW("floor", MCR_TYPE_INTEGER, 0, "", 1, 1048576, 16, 0, 0, "Samples of every pixel at least, rounded up to whole rounds."),
+};
+
 static const struct mcr_parameter render[] = {
     [RENDER_SAMPLER] = WORD("sampler", MCR_WORD_SAMPLER, 0,
                             "How directions and numbers are drawn; by default mixture(cosine 1, light 1) where there is light to sample, else cosine."),
@@ -99,6 +103,12 @@ static const struct mcr_parameter render[] = {
     [RENDER_COMPAT] = WORD("compat", MCR_WORD_COMPAT, 0, "Known mistakes to make on purpose, so that a study can show what each does; none by default."),
     [RENDER_TEXTURE_MEMORY] = ROW("texture_memory", MCR_TYPE_NUMBER, ABOVE, "MiB", 0, 1048576, MCR_TEXTURE_MEMORY, 0, 0,
                                   "What the pictures of all textures may take together; those that take more are reduced."),
+    [RENDER_TIME] = ROW("time", MCR_TYPE_NUMBER, ABOVE, "seconds", 0, 1e9, 0, 0, 0, "Ends the rendering after so long, with one round of samples at least."),
+    [RENDER_TARGET_ERROR] = ROW("target_error", MCR_TYPE_NUMBER, ABOVE, "", 0, FAR, 0, 0, 0,
+                                "Ends the rendering when the picture's relative error is not above this, with 95 % confidence."),
+    [RENDER_ADAPTIVE] = WORD("adaptive", MCR_WORD_ADAPTIVE, 0, "Gives noisy pixels more samples, without bias; off by default."),
+    [RENDER_ROUND] = ROW("round", MCR_TYPE_INTEGER, 0, "", 1, 65536, 16, 0, 0,
+                         "Samples that time, target_error and adaptive add to a pixel at once; correlated numbers are laid out by rounds."),
 };
 
 #define WORDS(word, words, text)                                                                                                   \
@@ -315,6 +325,7 @@ const struct mcr_block_word mcr_tone_words[MCR_TONE_WORDS] = {
     { "aces", NULL, MCR_BLOCK_FILM, 0, NULL, "Filmic, with more contrast." },
 };
 const struct mcr_block_word mcr_roulette_word = BLOCK("on", NULL, MCR_BLOCK_RENDER, roulette, "Russian roulette.");
+const struct mcr_block_word mcr_adaptive_word = BLOCK("on", NULL, MCR_BLOCK_RENDER, adaptive, "More samples where more noise is.");
 
 const struct mcr_block_word *mcr_scene_block(const char *word, const char *kind)
 {
@@ -348,6 +359,7 @@ const char *mcr_word_form(uint32_t type)
         [MCR_WORD_FILTER] = "box, tent, gaussian or mitchell",
         [MCR_WORD_TONE] = "linear, reinhard, hable or aces",
         [MCR_WORD_ROULETTE] = "on, off or on(from=N)",
+        [MCR_WORD_ADAPTIVE] = "on, off or on(floor=N)",
         [MCR_WORD_COMPAT] = "none, clamp, background-at-limit, disk-polar, sphere-spherical or floor-sqrt, or a tuple of these",
         [MCR_WORD_TEXT] = "a text in quotes",
         [MCR_WORD_SAMPLERS] = "a sampler such as cosine or a tuple of samplers",

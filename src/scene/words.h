@@ -32,6 +32,7 @@ enum mcr_word_type {
     MCR_WORD_FILTER,      /* a filter: a name or a call */
     MCR_WORD_TONE,        /* a tone curve: a name or a call */
     MCR_WORD_ROULETTE,    /* on, off or on(from=N) */
+    MCR_WORD_ADAPTIVE,    /* on, off or on(floor=N) */
     MCR_WORD_COMPAT,      /* none, a quirk's name, or a tuple of them */
     MCR_WORD_TEXT,        /* a string */
     MCR_WORD_SAMPLERS,    /* a sampler expression, or a tuple of them */
@@ -78,6 +79,8 @@ extern const struct mcr_block_word mcr_filter_words[MCR_FILTER_COUNT];
 extern const struct mcr_block_word mcr_tone_words[MCR_TONE_WORDS];
 /* The argument of `roulette on(from=N)`. */
 extern const struct mcr_block_word mcr_roulette_word;
+/* The argument of `adaptive on(floor=N)`. */
+extern const struct mcr_block_word mcr_adaptive_word;
 
 /* Places in the tables. */
 enum { CAMERA_FROM, CAMERA_TO, CAMERA_UP, CAMERA_FOV, CAMERA_FOCAL, CAMERA_FILM_HEIGHT, CAMERA_LENS_RADIUS, CAMERA_FOCUS_DISTANCE };
@@ -87,7 +90,8 @@ enum { TONE_WHITE };
 enum { FILTER_RADIUS, FILTER_SIGMA, FILTER_B = 1, FILTER_C };
 enum {
     RENDER_SAMPLER, RENDER_SPP, RENDER_DEPTH, RENDER_SEED, RENDER_THREADS, RENDER_REPLICATES, RENDER_ROULETTE, RENDER_BACKGROUND,
-    RENDER_ACCEL, RENDER_PRECISION, RENDER_MIS, RENDER_BATCH, RENDER_COMPAT, RENDER_TEXTURE_MEMORY
+    RENDER_ACCEL, RENDER_PRECISION, RENDER_MIS, RENDER_BATCH, RENDER_COMPAT, RENDER_TEXTURE_MEMORY,
+    RENDER_TIME, RENDER_TARGET_ERROR, RENDER_ADAPTIVE, RENDER_ROUND
 };
 enum {
     STUDY_TITLE, STUDY_SAMPLERS, STUDY_SPP, STUDY_DEPTH, STUDY_PRECISION, STUDY_ACCEL, STUDY_ROULETTE, STUDY_COMPAT, STUDY_SEEDS, STUDY_RUNS, STUDY_SEED,
@@ -127,6 +131,7 @@ enum { STEP_TRANSLATE, STEP_ROTATE, STEP_SCALE, STEP_MATRIX, STEP_LOOKAT };
 #define MCR_TEXTURE_MEMORY 1024 /* MiB, by default */
 #define MCR_FILM_LIMIT 65536u
 #define MCR_FILM_BYTES_PER_PIXEL 56u
+#define MCR_FILM_ROUND_BYTES_PER_PIXEL 120u  /* more, where pixels have numbers of samples of their own: counts, scouts, noise, figures */
 #define MCR_FILM_CHANNEL_BYTES_PER_PIXEL 72u /* more, where it keeps the channels' variances */
 #define MCR_FILM_MEMORY_LIMIT ((uint64_t)1 << 30)
 

@@ -26,6 +26,7 @@ static struct mcr_overrides overrides_of(const struct mcr_study_setup *setup, co
     over.accel = settings->accel;
     over.compat = settings->compat;
     over.replicates = 1; /* errors come from the seeds */
+    over.plain = 1;
     over.has_roulette = settings->has_roulette;
     over.roulette = settings->roulette;
     if (asked->has_size && !over.has_size) {

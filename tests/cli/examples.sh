@@ -154,8 +154,9 @@ options_listed() { sed -n 's/^\.It Fl Fl \([a-z-]*\).*/--\1/p; s/^\.It Fl \(o\) 
 keys_told()
 {
     mcrender cornell-box.scn --size 8x8 --spp 4 --profile --quiet -o keys.ppm --report keys.json || return 1
+    mcrender cornell-box.scn --size 8x8 --spp 64 --adaptive --time 100 --target-error 100 --quiet -o keys.ppm --report rounds.json || return 1
     # the last four are there only if a sample was not finite
-    { sed -n 's/^ *"\([a-z_]*\)": .*/\1/p' keys.json; printf '%s\n' not_finite_first x y sample; } | sort -u
+    { sed -n 's/^ *"\([a-z_]*\)": .*/\1/p' keys.json rounds.json; printf '%s\n' not_finite_first x y sample; } | sort -u
 }
 keys_listed() { sed -n '/^\.\\" keys: begin/,/^\.\\" keys: end/p' "$1" | sed -n 's/^\.It Cm //p' | tr ' ' '\n' | grep '^[a-z_]*$' | sort -u; }
 

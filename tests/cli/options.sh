@@ -61,7 +61,7 @@ sets 'the last one counts' spp 9 --spp 3 --spp 9
 sets '--name=value' spp 7 --spp=7
 sets '--name=value' luminance 0.5 --set=glow=0.5
 sets abbreviated spp 7 --sp 7
-sets abbreviated sampler uniform --sam=uniform
+sets '--name=value' sampler uniform --sampler=uniform
 sets abbreviated precision double --pre double
 run glow.scn --quiet --threads 0 -o out.ppm --report out.json
 check "--threads 0: all processors" test "$(value threads out.json)" -ge 1
@@ -153,7 +153,7 @@ refused "--precision single is not available in this build" --precision single
 refused "--accel embree is not available in this build" --accel embree
 refused "--sampler expects EXPR" --sampler ''
 refused "--report expects FILE" --report=
-for option in -o --spp --depth --seed --threads --sampler --size --crop --precision --accel --isa --batch --replicates --roulette --compat --set --plugin \
+for option in -o --spp --depth --seed --threads --sampler --size --crop --precision --accel --isa --batch --replicates --roulette --compat --time --target-error --round --sample-map --use-map --set --plugin \
     --layers --report --bits --exposure --tone; do
     refused "$option expects" "$option"
 done
@@ -162,6 +162,7 @@ refused "unknown option '--spq', did you mean '--spp'?" --spq 4
 refused "unknown option '--sampelr', did you mean '--sampler'?" --sampelr=uniform
 refused "unknown option '--frobnicate' (see mcrender --help)" --frobnicate
 refused "unknown option '-q'" -q
+refused "'--sam' may be '--sampler' or '--sample-map'" --sam=uniform
 refused "'--se' may be '--seed' or '--set'" --se 4
 refused "one operand expected: 'other.scn' follows 'glow.scn'" other.scn
 many=()
@@ -211,11 +212,11 @@ ends "check of a scene with mistakes" 3 "bad.scn:2:10: error: unknown setting 'r
 for how in "--help" "-h" "check --help" "plugins --help" "--hel"; do
     run $how
     ends "$how" 0
-    check "$how: 24 lines of 80 columns" awk 'length > 80 { bad = 1 } END { exit bad || NR > 24 || NR < 10 }' "$TMPDIR/stdout"
+    check "$how: 32 lines of 80 columns" awk 'length > 80 { bad = 1 } END { exit bad || NR > 32 || NR < 10 }' "$TMPDIR/stdout"
     check "$how: nothing on stderr" test ! -s "$TMPDIR/stderr"
 done
-for option in -o --spp --depth --seed --threads --sampler --size --crop --precision --accel --isa --batch --replicates --roulette --compat --set \
-    --plugin --layers --report --profile --bits --exposure --tone --quiet --werror --help --version; do
+for option in -o --spp --depth --seed --threads --sampler --size --crop --precision --accel --isa --batch --replicates --roulette --compat --time --target-error --round --sample-map --use-map --set \
+    --plugin --layers --report --profile --adaptive --bits --exposure --tone --quiet --werror --help --version; do
     check "--help tells $option" grep -q -- "^\(.* \)\?$option " "$TMPDIR/stdout"
 done
 run --version
