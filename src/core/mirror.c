@@ -3,26 +3,42 @@
  * Where a mirror-like lobe was chosen, it takes the place of what the sampler drew; elsewhere the sampler's density is multiplied by the probability that
  * none was. Before the scatter stage. Stage file, compiled once per instruction set.
  */
+#include <string.h>
+
 #include "core/stages.h"
+
+/* Takes the lobe's value where one was chosen. */
+static void take(uint32_t n, const double *none, const double *lobe, double *value)
+{
+    MCR_LANES
+    for (uint32_t i = 0; i < n; i++)
+        value[i] = none[i] > 0 ? value[i] : lobe[i];
+}
+
+/* The density of what was drawn, times the probability of none; or the lobe's probability. */
+static void weigh(uint32_t n, const double *none, const double *probability, double *density)
+{
+    MCR_LANES
+    for (uint32_t i = 0; i < n; i++)
+        density[i] = (none[i] > 0 ? density[i] : 1.0) * probability[i];
+}
 
 void MCR_ISA_NAME(mcr_stage_mirror)(struct mcr_batch *batch, const struct mcr_range *range)
 {
     const struct mcr_lobes *l = &batch->lobe;
-    const int spreads = batch->core->group[range->group].spreads;
-    const double *none = l->none, *probability = l->probability, *lx = l->x, *ly = l->y, *lz = l->z, *lr = l->r, *lg = l->g, *lb = l->b;
-    double *wx = batch->wx, *wy = batch->wy, *wz = batch->wz, *fr = batch->fr, *fg = batch->fg, *fb = batch->fb;
-    double *density = batch->density, *own = batch->material_density;
-    MCR_LANES
-    for (uint32_t k = range->begin; k < range->end; k++) {
-        int drawn = none[k] > 0;
-        double chance = probability[k], sampled = spreads ? density[k] : 0.0, had = spreads ? own[k] : 0.0;
-        wx[k] = drawn ? wx[k] : lx[k];
-        wy[k] = drawn ? wy[k] : ly[k];
-        wz[k] = drawn ? wz[k] : lz[k];
-        fr[k] = drawn ? fr[k] : lr[k];
-        fg[k] = drawn ? fg[k] : lg[k];
-        fb[k] = drawn ? fb[k] : lb[k];
-        density[k] = (drawn ? sampled : 1.0) * chance;
-        own[k] = (drawn ? had : 1.0) * chance;
+    const uint32_t b = range->begin, n = range->end - b;
+    const double *none = l->none + b;
+    double *density = batch->density + b, *own = batch->material_density + b;
+    if (!batch->core->group[range->group].spreads) { /* nothing was drawn */
+        memset(density, 0, n * sizeof *density);
+        memset(own, 0, n * sizeof *own);
     }
+    take(n, none, l->x + b, batch->wx + b);
+    take(n, none, l->y + b, batch->wy + b);
+    take(n, none, l->z + b, batch->wz + b);
+    take(n, none, l->r + b, batch->fr + b);
+    take(n, none, l->g + b, batch->fg + b);
+    take(n, none, l->b + b, batch->fb + b);
+    weigh(n, none, l->probability + b, density);
+    weigh(n, none, l->probability + b, own);
 }

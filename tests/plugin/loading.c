@@ -154,7 +154,8 @@ static void test_parameters(void)
     refused("a parameter without a name", "-DPARAMETERS=1 -DTABLE='{P(0)}'", "the name of parameter 1 is no word");
     refused("a parameter with an evil name", "-DPARAMETERS=1 -DTABLE='{P(\"n=3\")}'", "the name of parameter 1 is no word");
     refused("a parameter without a unit", "-DPARAMETERS=1 -DTABLE='{P(\"n\",.unit=0)}'", "unit or summary of parameter 'n' is missing");
-    refused("an unknown type", "-DPARAMETERS=1 -DTABLE='{P(\"n\",.type=5)}'", "parameter 'n' has the unknown type 5");
+    refused("a material in a sampler", "-DPARAMETERS=1 -DTABLE='{P(\"n\",.type=5)}'", "parameter 'n' is a material, which only");
+    refused("an unknown type", "-DPARAMETERS=1 -DTABLE='{P(\"n\",.type=6)}'", "parameter 'n' has the unknown type 6");
     refused("unknown flags", "-DPARAMETERS=1 -DTABLE='{P(\"n\",.flags=64)}'", "parameter 'n' has unknown flags");
     refused("a varying setting of a sampler", "-DPARAMETERS=1 -DTABLE='{P(\"n\",.flags=2)}'", "which only a material's can be");
     refused("a default out of range", "-DPARAMETERS=1 -DTABLE='{P(\"n\",.fallback={2})}'", "the default of parameter 'n' is 2, expected 0 to 1");

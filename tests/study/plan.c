@@ -25,7 +25,7 @@ static void defaults(void)
         ok(strcmp(plan->title, "room.scn") == 0 && strcmp(plan->output, "room-study") == 0, "title and folder by the scene's name: %s, %s", plan->title,
            plan->output);
         ok(plan->spp_count == 1 && plan->spp[0] == 7 && plan->depth[0] == 3 && plan->roulette[0] == 0, "spp, depth and roulette of `render`");
-        ok(plan->sampler_count == 1 && strcmp(plan->sampler[0], "mixture(cosine 1, light 1)") == 0, "the scene's sampler: %s", plan->sampler[0]);
+        ok(plan->sampler_count == 1 && strcmp(plan->sampler[0], "sobol(nee)") == 0, "the scene's sampler: %s", plan->sampler[0]);
         ok(plan->seeds == 10 && plan->runs == 10 && plan->first_seed == 1 && plan->confidence == 0.95, "ten seeds, ten runs");
         ok(plan->reference_spp == 1024 && plan->reference_seed + MCR_REFERENCE_PARTS == UINT64_C(1) << 53, "a reference of 1024 spp, far seeds");
         ok((plan->metrics >> MCR_METRIC_MSE & 1) && (plan->metrics >> MCR_METRIC_MS_SSIM & 1), "mse and ms_ssim are measured");
