@@ -55,7 +55,7 @@ _mcrender()
         mapfile -t COMPREPLY < <(compgen -W "$(_mcrender_words "$program")" -- "$word")
     else
         mapfile -t COMPREPLY < <(compgen -f -X '!*.scn' -- "$word"; compgen -d -- "$word")
-        [ "$COMP_CWORD" = 1 ] && mapfile -t -O "${#COMPREPLY[@]}" COMPREPLY < <(compgen -W 'check compare plugins study' -- "$word")
+        [ "$COMP_CWORD" = 1 ] && mapfile -t -O "${#COMPREPLY[@]}" COMPREPLY < <(compgen -W 'check compare explain plugins study' -- "$word")
     fi
 }
 

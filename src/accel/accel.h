@@ -60,6 +60,12 @@ struct mcr_accel {
     uint32_t *item;                           /* a shape's index, or shape_count + a triangle's */
 };
 
+/*
+ * Up to this many shapes and triangles `auto` takes the list. Both cost the same, by `make bench`, at 100-200 shapes with the baseline's
+ * instructions, at 230-350 with AVX2 and at 500-700 with AVX-512.
+ */
+#define MCR_ACCEL_LIST_LIMIT 192u
+
 /* kind: MCR_ACCEL_*; auto takes the list for few shapes. NULL when memory is short. */
 struct mcr_accel *mcr_accel_create(struct mcr_arena *arena, const struct mcr_scene *scene, uint32_t kind);
 

@@ -6,12 +6,6 @@
 
 #include "accel/accel.h"
 
-/*
- * Up to this many shapes and triangles `auto` takes the list. Both cost the same, by `make bench`, at 100-200 shapes with the baseline's
- * instructions, at 230-350 with AVX2 and at 500-700 with AVX-512.
- */
-#define LIST_LIMIT 192u
-
 /* A tree's leaf holds at most this many items, unless they cannot be told apart. */
 #define LEAF_ITEMS 4u
 #define BINS 16
@@ -363,7 +357,7 @@ struct mcr_accel *mcr_accel_create(struct mcr_arena *arena, const struct mcr_sce
     if (!accel)
         return NULL;
     if (kind == MCR_ACCEL_AUTO)
-        kind = (uint64_t)scene->shape_count + scene->triangles.count <= LIST_LIMIT ? MCR_ACCEL_LIST : MCR_ACCEL_BVH;
+        kind = (uint64_t)scene->shape_count + scene->triangles.count <= MCR_ACCEL_LIST_LIMIT ? MCR_ACCEL_LIST : MCR_ACCEL_BVH;
     accel->kind = kind;
     accel->shape_count = scene->shape_count;
     accel->triangles = &scene->triangles;

@@ -7,6 +7,7 @@
 
 int mcr_command_render(struct mcr_options *options);
 int mcr_command_check(struct mcr_options *options);
+int mcr_command_explain(struct mcr_options *options);
 int mcr_command_study(struct mcr_options *options);
 int mcr_command_plugins(struct mcr_options *options);
 /* Has options of its own; argv[0] is its name. */

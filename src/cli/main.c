@@ -19,7 +19,8 @@ static int scene_command(int argc, char **argv)
         const char *name;
         int (*run)(struct mcr_options *options);
         int needs_operand;
-    } commands[] = {{"", mcr_command_render, 1}, {"check", mcr_command_check, 1}, {"study", mcr_command_study, 1}, {"plugins", mcr_command_plugins, 0}};
+    } commands[] = {{"", mcr_command_render, 1}, {"check", mcr_command_check, 1}, {"explain", mcr_command_explain, 1}, {"study", mcr_command_study, 1},
+                    {"plugins", mcr_command_plugins, 0}};
     struct mcr_options options;
     size_t c = 0;
     for (size_t i = 1; argc > 1 && i < sizeof commands / sizeof *commands; i++)

@@ -14,7 +14,7 @@ enum option_id {
 };
 
 /* Where an option may stand. */
-enum { RENDER = 1, CHECK = 2, PLUGINS = 4, STUDY = 8, ALL = 15 };
+enum { RENDER = 1, CHECK = 2, PLUGINS = 4, STUDY = 8, EXPLAIN = 16, ALL = 31 };
 
 static const struct option {
     enum option_id id;
@@ -22,36 +22,36 @@ static const struct option {
     const char *name, *argument, *text;
 } table[] = { /* in the order of option_id */
     {OUTPUT, RENDER | STUDY, "-o", "FILE", "image; '-': stdout"},
-    {SPP, RENDER | CHECK, "--spp", "N", "samples per pixel"},
-    {DEPTH, RENDER | CHECK, "--depth", "N", "scatterings at most"},
-    {SEED, RENDER | CHECK, "--seed", "N", "of all randomness"},
-    {THREADS, RENDER | CHECK | STUDY, "--threads", "N", "0: all processors"},
-    {SAMPLER, RENDER | CHECK, "--sampler", "EXPR", "draws directions"},
-    {SIZE, RENDER | CHECK | STUDY, "--size", "WxH", "of the picture"},
-    {CROP, RENDER | CHECK | STUDY, "--crop", "X,Y,X,Y", "part of the picture"},
-    {PRECISION, RENDER | CHECK, "--precision", "KIND", "double"},
-    {ACCEL, RENDER | CHECK, "--accel", "KIND", "auto, list, bvh"},
-    {ISA, RENDER | CHECK | PLUGINS | STUDY, "--isa", "NAME", "instruction set"},
-    {BATCH, RENDER | CHECK | STUDY, "--batch", "N", "paths at once"},
-    {REPLICATES, RENDER | CHECK, "--replicates", "N", "for the error"},
-    {ROULETTE, RENDER | CHECK, "--roulette", "WORD", "on, off, on(from=N)"},
-    {COMPAT, RENDER | CHECK, "--compat", "LIST", "known mistakes"},
-    {TIME, RENDER | CHECK, "--time", "SECONDS", "ends after so long"},
-    {TARGET_ERROR, RENDER | CHECK, "--target-error", "E", "ends when below"},
-    {ADAPTIVE, RENDER | CHECK, "--adaptive", NULL, "more where noisy"},
-    {ROUND, RENDER | CHECK, "--round", "N", "samples at once"},
+    {SPP, RENDER | CHECK | EXPLAIN, "--spp", "N", "samples per pixel"},
+    {DEPTH, RENDER | CHECK | EXPLAIN, "--depth", "N", "scatterings at most"},
+    {SEED, RENDER | CHECK | EXPLAIN, "--seed", "N", "of all randomness"},
+    {THREADS, RENDER | CHECK | EXPLAIN | STUDY, "--threads", "N", "0: all processors"},
+    {SAMPLER, RENDER | CHECK | EXPLAIN, "--sampler", "EXPR", "draws directions"},
+    {SIZE, RENDER | CHECK | EXPLAIN | STUDY, "--size", "WxH", "of the picture"},
+    {CROP, RENDER | CHECK | EXPLAIN | STUDY, "--crop", "X,Y,X,Y", "part of the picture"},
+    {PRECISION, RENDER | CHECK | EXPLAIN, "--precision", "KIND", "double"},
+    {ACCEL, RENDER | CHECK | EXPLAIN, "--accel", "KIND", "auto, list, bvh"},
+    {ISA, RENDER | CHECK | EXPLAIN | PLUGINS | STUDY, "--isa", "NAME", "instruction set"},
+    {BATCH, RENDER | CHECK | EXPLAIN | STUDY, "--batch", "N", "paths at once"},
+    {REPLICATES, RENDER | CHECK | EXPLAIN, "--replicates", "N", "for the error"},
+    {ROULETTE, RENDER | CHECK | EXPLAIN, "--roulette", "WORD", "on, off, on(from=N)"},
+    {COMPAT, RENDER | CHECK | EXPLAIN, "--compat", "LIST", "known mistakes"},
+    {TIME, RENDER | CHECK | EXPLAIN, "--time", "SECONDS", "ends after so long"},
+    {TARGET_ERROR, RENDER | CHECK | EXPLAIN, "--target-error", "E", "ends when below"},
+    {ADAPTIVE, RENDER | CHECK | EXPLAIN, "--adaptive", NULL, "more where noisy"},
+    {ROUND, RENDER | CHECK | EXPLAIN, "--round", "N", "samples at once"},
     {SAMPLE_MAP, RENDER, "--sample-map", "FILE", "samples of pixels"},
     {USE_MAP, RENDER, "--use-map", "FILE", "the same again"},
-    {SET, RENDER | CHECK | STUDY, "--set", "NAME=VALUE", "replaces a `let`"},
+    {SET, RENDER | CHECK | EXPLAIN | STUDY, "--set", "NAME=VALUE", "replaces a `let`"},
     {PLUGIN, ALL, "--plugin", "FILE", "before all others"},
-    {LAYERS, RENDER, "--layers", "LIST", "more, in EXR"},
-    {REPORT, RENDER, "--report", "FILE", "figures as JSON"},
+    {LAYERS, RENDER | EXPLAIN, "--layers", "LIST", "more, in EXR"},
+    {REPORT, RENDER | EXPLAIN, "--report", "FILE", "figures as JSON"},
     {PROFILE, RENDER, "--profile", NULL, "time of each stage"},
     {BITS, RENDER, "--bits", "8|16", "of PPM, PNG, TIFF"},
     {EXPOSURE, RENDER, "--exposure", "STOPS", "of PPM, PNG, JPEG"},
     {TONE, RENDER, "--tone", "CURVE", "of PPM, PNG, JPEG"},
-    {QUIET, RENDER | CHECK | STUDY, "--quiet", NULL, "errors and warnings"},
-    {WERROR, RENDER | CHECK | STUDY, "--werror", NULL, "warnings are errors"},
+    {QUIET, RENDER | CHECK | EXPLAIN | STUDY, "--quiet", NULL, "errors and warnings"},
+    {WERROR, RENDER | CHECK | EXPLAIN | STUDY, "--werror", NULL, "warnings are errors"},
     {HELP, ALL, "--help", NULL, "this text"},
     {VERSION, ALL, "--version", NULL, "the version"},
 };
@@ -63,6 +63,7 @@ void mcr_options_help(FILE *to)
     const size_t rows = (OPTIONS + 1) / 2;
     fputs("Usage: mcrender SCENE [-o FILE]... [OPTION]...   render; - is standard input\n"
           "       mcrender check SCENE [OPTION]...          parse and build only\n"
+          "       mcrender explain SCENE [OPTION]...        what it takes and costs\n"
           "       mcrender study SCENE [OPTION]...          compare samplers; study --help\n"
           "       mcrender compare IMAGE REFERENCE          their distance; compare --help\n"
           "       mcrender plugins [NAME]                   list plugins, or explain one\n\n",
@@ -321,7 +322,7 @@ static const struct option *find(const char *argument, const char **value)
 
 int mcr_options_parse(struct mcr_options *options, const char *command, int argc, char **argv)
 {
-    int where = !strcmp(command, "check") ? CHECK : !strcmp(command, "plugins") ? PLUGINS : !strcmp(command, "study") ? STUDY : RENDER;
+    int where = !strcmp(command, "check") ? CHECK : !strcmp(command, "plugins") ? PLUGINS : !strcmp(command, "study") ? STUDY : !strcmp(command, "explain") ? EXPLAIN : RENDER;
     int operands_only = 0;
     memset(options, 0, sizeof *options);
     options->argument_count = argc;

@@ -148,9 +148,8 @@ static void cut_all(struct cutter *c, struct mcr_batch *b)
     const uint32_t groups = core->group_count, rays = core->capacity;
     struct mcr_surface_points *at = &b->at;
     double **of_rays[] = {&b->rox, &b->roy, &b->roz, &b->rdx, &b->rdy, &b->rdz, &b->t};
-    double **of_points[] = {&at->px, &at->py, &at->pz, &at->nx,   &at->ny,    &at->nz, &at->gx, &at->gy, &at->gz, &at->ox,
-                            &at->oy, &at->oz, &at->side, &at->reach, &b->wx,  &b->wy,  &b->wz,  &b->density,
-                            &b->fr,  &b->fg,  &b->fb,  &b->alive};
+    double **of_points[] = {&at->px, &at->py, &at->pz,   &at->gx,    &at->gy, &at->gz, &at->ox,      &at->oy, &at->oz, &at->side,
+                            &at->reach, &b->wx, &b->wy,  &b->wz,     &b->density, &b->fr, &b->fg,      &b->fb,  &b->alive};
     for (size_t i = 0; i < sizeof of_rays / sizeof *of_rays; i++)
         *of_rays[i] = cut(c, rays, sizeof(double));
     b->hit = cut(c, rays, sizeof *b->hit);
@@ -159,7 +158,11 @@ static void cut_all(struct cutter *c, struct mcr_batch *b)
     cut_paths(c, &b->sorted, b->lanes, core);
     for (size_t i = 0; i < sizeof of_points / sizeof *of_points; i++)
         *of_points[i] = cut(c, b->lanes, sizeof(double));
-    if (!core->surfaces.smooth && !(core->charts.needs & MCR_NEEDS_NORMALS)) {
+    if (core->surfaces.smooth || core->charts.needs & MCR_NEEDS_NORMALS) {
+        at->nx = cut(c, b->lanes, sizeof(double));
+        at->ny = cut(c, b->lanes, sizeof(double));
+        at->nz = cut(c, b->lanes, sizeof(double));
+    } else {
         at->nx = at->gx;
         at->ny = at->gy;
         at->nz = at->gz;
@@ -174,9 +177,11 @@ static void cut_all(struct cutter *c, struct mcr_batch *b)
     b->zone_list = cut(c, (3 * (size_t)groups + 1) * rays, sizeof *b->zone_list);
     for (uint32_t k = 0; k < MCR_NUMBERS_MAX; k++)
         b->number[k] = cut(c, b->lanes, sizeof(double));
-    b->material_density = cut(c, b->lanes, sizeof(double));
+    if (core->scene->render.roulette || core->lobes)
+        b->material_density = cut(c, b->lanes, sizeof(double));
     b->kept = cut(c, rays, sizeof(double));
-    b->roulette = cut(c, b->lanes, sizeof(double));
+    if (core->scene->render.roulette)
+        b->roulette = cut(c, b->lanes, sizeof(double));
     b->lane_input = cut(c, (size_t)core->channels * b->lanes, sizeof(double));
     b->channel = cut(c, core->channels, sizeof *b->channel);
     b->stride = cut(c, core->channels, sizeof *b->stride);
@@ -214,7 +219,8 @@ static void cut_all(struct cutter *c, struct mcr_batch *b)
     b->scratch = cut(c, core->scratch_bytes, 1);
 }
 
-int mcr_batch_init(struct mcr_batch *batch, struct mcr_core *core)
+/* Cuts nothing yet: only counts. */
+static size_t lay_out(struct mcr_batch *batch, struct mcr_core *core)
 {
     struct cutter c = {NULL, 0};
     memset(batch, 0, sizeof *batch);
@@ -222,10 +228,23 @@ int mcr_batch_init(struct mcr_batch *batch, struct mcr_core *core)
     /* Points take at most the rays and a pad for each zone; camera paths fill up what the rays leave, with a pad for each job. */
     batch->lanes = 2 * core->capacity + MCR_LANE_PAD * (2 * core->group_count + MCR_JOBS + 1);
     cut_all(&c, batch);
-    batch->memory = aligned_alloc(64, c.used);
+    return c.used;
+}
+
+size_t mcr_batch_bytes(struct mcr_core *core)
+{
+    struct mcr_batch batch;
+    return lay_out(&batch, core);
+}
+
+int mcr_batch_init(struct mcr_batch *batch, struct mcr_core *core)
+{
+    const size_t bytes = lay_out(batch, core);
+    struct cutter c;
+    batch->memory = aligned_alloc(64, bytes);
     if (!batch->memory)
         return -1;
-    memset(batch->memory, 0, c.used);
+    memset(batch->memory, 0, bytes);
     c = (struct cutter){batch->memory, 0};
     cut_all(&c, batch);
     for (uint32_t m = 0; has_textures(core) && m < core->scene->material_count; m++)

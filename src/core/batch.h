@@ -127,6 +127,12 @@ struct mcr_interior {
     double attenuation[3];          /* 1 / render length */
 };
 
+/* Bytes of the tables, by what they are for. */
+struct mcr_core_tables {
+    uint64_t surfaces; /* groups and textures' places too */
+    uint64_t emitters, charts, crossing, sky, points;
+};
+
 /* What all threads share: immutable during a pass. */
 struct mcr_core {
     const struct mcr_scene *scene;
@@ -166,6 +172,7 @@ struct mcr_core {
     const struct mcr_render_options *options;
     const struct mcr_stages *plain; /* where `stages` begins paths by a task (directed.c): the stages of the instruction set */
     const struct mcr_task *task;    /* of the running pass; NULL without a director */
+    struct mcr_core_tables tables;
 };
 
 /* Points of one batch, sorted. */
@@ -329,8 +336,24 @@ struct mcr_batch {
     uint32_t not_finite_sample;
     uint64_t camera_rays, bounce_rays, shadow_rays, scatterings, crossings;
     double stage_seconds[MCR_STAGE_COUNT];
+    double seconds_within;          /* of stages that the running one has called */
     void *memory;
 };
+
+/* Runs a statement and books its time on a stage, with --profile; not that of stages within it, which is booked on them. Needs base/cpu.h. */
+#define MCR_TIMED(STAGE, STATEMENT)                                            \
+    do {                                                                       \
+        if (batch->core->options->profile) {                                   \
+            double start = mcr_wall_seconds(), before = batch->seconds_within; \
+            batch->seconds_within = 0;                                         \
+            STATEMENT;                                                         \
+            start = mcr_wall_seconds() - start;                                \
+            batch->stage_seconds[STAGE] += start - batch->seconds_within;      \
+            batch->seconds_within = before + start;                            \
+        } else {                                                               \
+            STATEMENT;                                                         \
+        }                                                                      \
+    } while (0)
 
 /* Camera rays for lanes that were given their pixels: x, y in pixels of the full picture; u: film and lens numbers (NULL without a lens). */
 struct mcr_camera_lanes {
@@ -388,6 +411,8 @@ extern const struct mcr_stages mcr_stages_isa0, mcr_stages_isa1, mcr_stages_isa2
 
 /* batch.c: memory. Returns 0, or -1 when it is short. */
 int mcr_batch_init(struct mcr_batch *batch, struct mcr_core *core);
+/* The bytes that mcr_batch_init takes. */
+size_t mcr_batch_bytes(struct mcr_core *core);
 void mcr_batch_fini(struct mcr_batch *batch);
 
 /* normals.c: tilts shading normals by normal maps and bumps, after `coordinates`; only where a material has them. */

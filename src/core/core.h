@@ -19,15 +19,26 @@
 enum mcr_stage {
     MCR_STAGE_CAMERA,
     MCR_STAGE_HIT,
+    MCR_STAGE_CROSSING,    /* of paths and look-ups alike */
     MCR_STAGE_SORT,
     MCR_STAGE_SURFACE,
+    MCR_STAGE_COORDINATES, /* footprints, tangents */
+    MCR_STAGE_NORMALS,     /* tilted by maps and bumps */
+    MCR_STAGE_INPUTS,      /* values that differ between the materials of a call; those of look-ups too */
+    MCR_STAGE_TEXTURES,    /* the same */
+    MCR_STAGE_INTERIORS,
+    MCR_STAGE_SKY,         /* seen by paths; the background, too */
     MCR_STAGE_EMISSION,
     MCR_STAGE_NUMBERS,
     MCR_STAGE_SAMPLER,
-    MCR_STAGE_LIGHT,
+    MCR_STAGE_LOBES,
+    MCR_STAGE_LIGHT,       /* look-ups, with their rays and all that they call but crossing and textures */
+    MCR_STAGE_POINTS,      /* lights without extent, the same */
     MCR_STAGE_MATERIAL,
+    MCR_STAGE_ROULETTE,
     MCR_STAGE_SCATTER,
     MCR_STAGE_COMPACT,
+    MCR_STAGE_LAYERS,      /* of features */
     MCR_STAGE_FILM,
     MCR_STAGE_COUNT
 };
@@ -68,6 +79,7 @@ struct mcr_render_options {
     uint32_t isa;                            /* MCR_ISA_*, not above what the processor has */
     int profile;                             /* time the stages */
     uint32_t features;                       /* MCR_FEATURE_* that the sink's add_features takes; 0 */
+    double pilot;                            /* not 0: only so many seconds of processor time, for the stats; see render.c */
     const volatile sig_atomic_t *stop;       /* not 0: end after the running pass. May be NULL */
     void (*progress)(void *data, double done, double seconds); /* done in [0,1]; called now and then on the main thread. May be NULL */
     void *progress_data;
@@ -76,6 +88,7 @@ struct mcr_render_options {
 
 struct mcr_render_stats {
     double wall_seconds, cpu_seconds;
+    double pass_seconds;                     /* of processor time: of the passes alone; of a pilot only */
     uint32_t threads, batch, passes;
     uint64_t samples;                        /* paths begun and finished */
     uint64_t camera_rays, bounce_rays, shadow_rays;

@@ -4,6 +4,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/cpu.h"
 #include "base/elementary.h"
 #include "core/host.h"
 
@@ -17,9 +18,10 @@
 int mcr_crossing_init(struct mcr_core *core, struct mcr_arena *arena)
 {
     const struct mcr_scene *scene = core->scene;
-    for (uint32_t m = 0; m < scene->material_count; m++) {
-        core->interiors |= (scene->material[m].traits.does & MCR_MATERIAL_INTERIOR) != 0;
-        core->crosses |= (scene->material[m].traits.does & (MCR_MATERIAL_INTERIOR | MCR_MATERIAL_PASSES)) != 0;
+    for (uint32_t p = 0; p < core->surfaces.count; p++) { /* a material that no surface has costs nothing */
+        uint32_t does = scene->material[core->surfaces.material[p]].traits.does;
+        core->interiors |= (does & MCR_MATERIAL_INTERIOR) != 0;
+        core->crosses |= (does & (MCR_MATERIAL_INTERIOR | MCR_MATERIAL_PASSES)) != 0;
     }
     if (!core->crosses)
         return 0;
@@ -461,7 +463,8 @@ int32_t mcr_look_visible(struct mcr_batch *batch, const struct mcr_look *look)
     core->trace->closest(core->accel, &look->rays, l->t, l->hit);
     for (uint32_t i = 0; i < look->rays.n; i++)
         look->seen[i] = l->t[i] >= look->far[i] ? 1.0 : 0.0;
-    int32_t status = follow(batch, look, 0, l->t, l->hit, &n);
+    int32_t status;
+    MCR_TIMED(MCR_STAGE_CROSSING, status = follow(batch, look, 0, l->t, l->hit, &n));
     for (uint32_t i = 0; i < n && !status; i++) {
         const struct mcr_crossing *c = &batch->crossing[i];
         look->seen[c->ray] = c->t >= c->far && (c->factor[0] > 0 || c->factor[1] > 0 || c->factor[2] > 0) ? 1.0 : 0.0;
@@ -480,7 +483,8 @@ int32_t mcr_look_closest(struct mcr_batch *batch, const struct mcr_look *look)
     memcpy(l->t, look->far, look->rays.n * sizeof *l->t);
     for (uint32_t i = 0; i < look->rays.n; i++)
         look->far[i] = INFINITY;
-    int32_t status = follow(batch, look, 1, l->t, look->hit, &n);
+    int32_t status;
+    MCR_TIMED(MCR_STAGE_CROSSING, status = follow(batch, look, 1, l->t, look->hit, &n));
     memcpy(look->far, l->t, look->rays.n * sizeof *l->t);
     for (uint32_t i = 0; i < n && !status; i++) {
         const struct mcr_crossing *c = &batch->crossing[i];

@@ -467,6 +467,7 @@ static int build(struct builder *b, struct mcr_arena *arena)
     all->node = b->node;
     all->bounds = b->bounds;
     all->place = b->place;
+    all->tree_bytes = nodes * (sizeof *b->node + sizeof *b->bounds) + all->count * sizeof *b->place;
     reorder(all, b->item);
     return 0;
 }

@@ -77,6 +77,7 @@ struct mcr_emitters {
     struct mcr_emitter_node *node;
     struct mcr_emitter_bounds *bounds;
     uint64_t *place;              /* where in the tree each emitter is */
+    uint64_t tree_bytes;
     double cosine[128];           /* cos(2 pi i / 128) */
 };
 

@@ -5,6 +5,7 @@
  */
 #include <string.h>
 
+#include "base/cpu.h"
 #include "core/batch.h"
 
 /* Points whose inputs are evaluated. */
@@ -72,20 +73,25 @@ static void look_up_several(struct mcr_batch *batch, const struct points *at)
     }
 }
 
-static void evaluate(struct mcr_batch *batch, const struct mcr_group *group, const struct points *at)
+static void look_up_all(struct mcr_batch *batch, const struct mcr_group *group, const struct points *at)
 {
     const struct mcr_core *core = batch->core;
-    for (uint32_t c = 0; c < group->channels && group->table; c++)
-        if (group->varies[c])
-            core->stages->gather(at->n, at->material, group->table[c], at->input + c * at->room);
-    if (!group->textured)
-        return;
     if (group->material_count > 1) {
         look_up_several(batch, at);
         return;
     }
     for (uint32_t x = core->textured_from[group->first]; x < core->textured_from[group->first + 1]; x++)
         look_up(&batch->textures, &core->textured[x], at, NULL, at->n);
+}
+
+static void evaluate(struct mcr_batch *batch, const struct mcr_group *group, const struct points *at)
+{
+    const struct mcr_core *core = batch->core;
+    for (uint32_t c = 0; c < group->channels && group->table; c++)
+        if (group->varies[c])
+            core->stages->gather(at->n, at->material, group->table[c], at->input + c * at->room);
+    if (group->textured)
+        MCR_TIMED(MCR_STAGE_TEXTURES, look_up_all(batch, group, at));
 }
 
 void mcr_inputs_prepare(struct mcr_batch *batch)
@@ -129,24 +135,26 @@ struct mcr_inputs mcr_group_inputs(struct mcr_batch *batch, const struct mcr_gro
 struct mcr_inputs mcr_elsewhere_inputs(struct mcr_batch *batch, const struct mcr_group *group, const struct mcr_points *at, const uint32_t *material)
 {
     const struct mcr_elsewhere *e = &batch->elsewhere;
+    const struct mcr_chart_lanes lanes = {.n = at->n,
+                                          .primitive = e->primitive,
+                                          .px = at->px,
+                                          .py = at->py,
+                                          .pz = at->pz,
+                                          .gx = at->gx,
+                                          .gy = at->gy,
+                                          .gz = at->gz,
+                                          .ox = at->ox,
+                                          .oy = at->oy,
+                                          .oz = at->oz,
+                                          .u = e->u,
+                                          .v = e->v,
+                                          .width = e->width,
+                                          .gu = {e->gu[0], e->gu[1], e->gu[2]},
+                                          .gv = {e->gv[0], e->gv[1], e->gv[2]}};
+    const struct points points = {at->n, material, e->u, e->v, e->width, e->input, batch->lanes};
     if (group->textured)
-        batch->core->stages->chart(batch->core, &(struct mcr_chart_lanes){.n = at->n,
-                                                                          .primitive = e->primitive,
-                                                                          .px = at->px,
-                                                                          .py = at->py,
-                                                                          .pz = at->pz,
-                                                                          .gx = at->gx,
-                                                                          .gy = at->gy,
-                                                                          .gz = at->gz,
-                                                                          .ox = at->ox,
-                                                                          .oy = at->oy,
-                                                                          .oz = at->oz,
-                                                                          .u = e->u,
-                                                                          .v = e->v,
-                                                                          .width = e->width,
-                                                                          .gu = {e->gu[0], e->gu[1], e->gu[2]},
-                                                                          .gv = {e->gv[0], e->gv[1], e->gv[2]}});
+        MCR_TIMED(MCR_STAGE_COORDINATES, batch->core->stages->chart(batch->core, &lanes));
     if (e->input)
-        evaluate(batch, group, &(struct points){at->n, material, e->u, e->v, e->width, e->input, batch->lanes});
+        MCR_TIMED(MCR_STAGE_INPUTS, evaluate(batch, group, &points));
     return hand_over(batch, group, e->input);
 }

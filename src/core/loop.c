@@ -13,18 +13,6 @@
 #include "core/lobes.h"
 #include "core/pass.h"
 
-/* Runs a statement and books its time on a stage, with --profile. */
-#define TIMED(STAGE, STATEMENT)                                          \
-    do {                                                                 \
-        if (batch->core->options->profile) {                             \
-            double start = mcr_wall_seconds();                                        \
-            STATEMENT;                                                   \
-            batch->stage_seconds[STAGE] += mcr_wall_seconds() - start;                \
-        } else {                                                         \
-            STATEMENT;                                                   \
-        }                                                                \
-    } while (0)
-
 static void fail(struct mcr_batch *batch, struct mcr_pass *pass, const struct mcr_node *node, int32_t status)
 {
     static const char *const reason[] = {"", "invalid", "out of memory", "unsupported", "internal error"};
@@ -186,9 +174,9 @@ static int32_t camera(struct mcr_batch *batch, struct mcr_pass *pass)
                                          .weight = weight};
         core->stages->camera(core->scene, &lanes);
         if (core->charts.needs)
-            core->stages->cones(batch, to, batch->rays, n);
+            MCR_TIMED(MCR_STAGE_COORDINATES, core->stages->cones(batch, to, batch->rays, n));
         if (core->interiors)
-            mcr_crossing_begin(batch, to, n);
+            MCR_TIMED(MCR_STAGE_INTERIORS, mcr_crossing_begin(batch, to, n));
         batch->rays += n;
         batch->states = (to + n + MCR_LANE_PAD - 1) / MCR_LANE_PAD * MCR_LANE_PAD;
         batch->camera_rays += n;
@@ -234,9 +222,9 @@ static int32_t roulette(struct mcr_batch *batch, const struct mcr_range *range)
     double *number = batch->roulette + b;
     int32_t status = MCR_OK;
     if (batch->core->group[range->group].spreads)
-        TIMED(MCR_STAGE_MATERIAL, status = mcr_group_density(batch, &part, &toward, batch->material_density + b));
+        status = mcr_group_density(batch, &part, &toward, batch->material_density + b);
     if (!status)
-        TIMED(MCR_STAGE_NUMBERS, status = mcr_numbers(batch, &batch->sorted, b, part.end, MCR_DIMENSION_ROULETTE, 1, &number));
+        status = mcr_numbers(batch, &batch->sorted, b, part.end, MCR_DIMENSION_ROULETTE, 1, &number);
     return status;
 }
 
@@ -258,14 +246,14 @@ static int32_t draw_range(struct mcr_batch *batch, const struct mcr_range *range
     for (uint32_t t = 0; t < core->continuing; t++)
         first += node->technique[t].dimensions;
     batch->kept_at = NULL;
-    TIMED(MCR_STAGE_NUMBERS, status = mcr_numbers(batch, &batch->sorted, b, range->end, MCR_DIMENSION_SAMPLER, core->dimensions, number));
+    MCR_TIMED(MCR_STAGE_NUMBERS, status = mcr_numbers(batch, &batch->sorted, b, range->end, MCR_DIMENSION_SAMPLER, core->dimensions, number));
     if (!status)
-        TIMED(MCR_STAGE_SAMPLER,
-              status = mcr_node_draw(batch, node, core->continuing, &at, (const double *const *)number + first, &toward, batch->density + b));
+        MCR_TIMED(MCR_STAGE_SAMPLER,
+                  status = mcr_node_draw(batch, node, core->continuing, &at, (const double *const *)number + first, &toward, batch->density + b));
     if (!status && core->combines)
-        TIMED(MCR_STAGE_LIGHT, status = mcr_light_lookups(batch, range, &at, number));
+        MCR_TIMED(MCR_STAGE_LIGHT, status = mcr_light_lookups(batch, range, &at, number));
     if (!status)
-        TIMED(MCR_STAGE_MATERIAL, status = mcr_group_evaluate(batch, range, &toward, &out));
+        MCR_TIMED(MCR_STAGE_MATERIAL, status = mcr_group_evaluate(batch, range, &toward, &out));
     return status;
 }
 
@@ -277,23 +265,23 @@ static int32_t scatter_range(struct mcr_batch *batch, const struct mcr_range *ra
     int32_t status = MCR_OK;
     batch->running = range;
     if (group->lobes)
-        TIMED(MCR_STAGE_MATERIAL, status = mcr_lobes_choose(batch, range));
+        MCR_TIMED(MCR_STAGE_LOBES, status = mcr_lobes_choose(batch, range));
     else if (core->lobes)
-        mcr_lobes_none(batch, range);
+        MCR_TIMED(MCR_STAGE_LOBES, mcr_lobes_none(batch, range));
     if (!status && group->spreads)
         status = draw_range(batch, range);
     if (!status && range->roulette < range->end)
-        status = roulette(batch, range);
+        MCR_TIMED(MCR_STAGE_ROULETTE, status = roulette(batch, range));
     if (!status && core->point_lights)
-        TIMED(MCR_STAGE_LIGHT, status = mcr_point_lights_add(batch, range));
+        MCR_TIMED(MCR_STAGE_POINTS, status = mcr_point_lights_add(batch, range));
     batch->running = NULL;
     if (status)
         return status;
     if (group->lobes)
-        TIMED(MCR_STAGE_SCATTER, core->stages->mirror(batch, range));
-    TIMED(MCR_STAGE_SCATTER, core->stages->scatter(batch, range));
+        MCR_TIMED(MCR_STAGE_LOBES, core->stages->mirror(batch, range));
+    MCR_TIMED(MCR_STAGE_SCATTER, core->stages->scatter(batch, range));
     if (core->interiors)
-        mcr_crossing_scattered(batch, range);
+        MCR_TIMED(MCR_STAGE_INTERIORS, mcr_crossing_scattered(batch, range));
     batch->scatterings += range->end - range->begin;
     return MCR_OK;
 }
@@ -306,39 +294,39 @@ static int32_t step(struct mcr_batch *batch, struct mcr_pass *pass)
     if (core->scene->render.compat & (MCR_COMPAT_BACKGROUND_AT_LIMIT | MCR_COMPAT_FLOOR_SQRT))
         mcr_compat_end_rays(batch);
     struct mcr_rays rays = {batch->rays, batch->rox, batch->roy, batch->roz, batch->rdx, batch->rdy, batch->rdz};
-    TIMED(MCR_STAGE_HIT, core->trace->closest(core->accel, &rays, batch->t, batch->hit));
+    MCR_TIMED(MCR_STAGE_HIT, core->trace->closest(core->accel, &rays, batch->t, batch->hit));
     if (core->crosses)
-        TIMED(MCR_STAGE_HIT, status = mcr_crossing_paths(batch));
+        MCR_TIMED(MCR_STAGE_CROSSING, status = mcr_crossing_paths(batch));
     if (!status && core->combines)
-        TIMED(MCR_STAGE_LIGHT, status = mcr_light_weights(batch));
+        MCR_TIMED(MCR_STAGE_LIGHT, status = mcr_light_weights(batch));
     if (status)
         return status;
-    TIMED(MCR_STAGE_SORT, core->stages->sort(batch));
+    MCR_TIMED(MCR_STAGE_SORT, core->stages->sort(batch));
     if (core->background && batch->miss_count)
-        core->stages->background(batch);
-    TIMED(MCR_STAGE_SURFACE, core->stages->surface(batch));
+        MCR_TIMED(MCR_STAGE_SKY, core->stages->background(batch));
+    MCR_TIMED(MCR_STAGE_SURFACE, core->stages->surface(batch));
     if (core->charts.needs)
-        TIMED(MCR_STAGE_SURFACE, core->stages->coordinates(batch));
+        MCR_TIMED(MCR_STAGE_COORDINATES, core->stages->coordinates(batch));
     if (core->charts.needs & MCR_NEEDS_NORMALS)
-        TIMED(MCR_STAGE_SURFACE, mcr_normals_tilt(batch));
-    TIMED(MCR_STAGE_MATERIAL, mcr_inputs_prepare(batch));
+        MCR_TIMED(MCR_STAGE_NORMALS, mcr_normals_tilt(batch));
+    MCR_TIMED(MCR_STAGE_INPUTS, mcr_inputs_prepare(batch));
     if (core->interiors)
-        mcr_crossing_points(batch);
+        MCR_TIMED(MCR_STAGE_INTERIORS, mcr_crossing_points(batch));
     if (batch->cap_r)
         mcr_compat_lower_caps(batch);
     if (core->features)
-        TIMED(MCR_STAGE_FILM, status = mcr_features_hit(batch));
+        MCR_TIMED(MCR_STAGE_LAYERS, status = mcr_features_hit(batch));
     if (!status)
-        TIMED(MCR_STAGE_EMISSION, status = emission(batch));
+        MCR_TIMED(MCR_STAGE_EMISSION, status = emission(batch));
     if (core->features)
-        mcr_features_direct(batch);
+        MCR_TIMED(MCR_STAGE_LAYERS, mcr_features_direct(batch));
     for (uint32_t r = 0; !status && r < batch->range_count && !batch->range[r].ends; r++)
         status = scatter_range(batch, &batch->range[r]);
     if (status)
         return status;
-    TIMED(MCR_STAGE_COMPACT, core->stages->compact(batch));
+    MCR_TIMED(MCR_STAGE_COMPACT, core->stages->compact(batch));
     batch->bounce_rays += batch->rays;
-    TIMED(MCR_STAGE_FILM, finish_jobs(batch, pass));
+    MCR_TIMED(MCR_STAGE_FILM, finish_jobs(batch, pass));
     return MCR_OK;
 }
 
@@ -347,7 +335,7 @@ void mcr_batch_run(struct mcr_batch *batch, struct mcr_pass *pass, uint32_t thre
     batch->replicate_key = pass->replicate_key;
     while (!atomic_load_explicit(&pass->failed, memory_order_relaxed)) {
         int32_t status;
-        TIMED(MCR_STAGE_CAMERA, status = camera(batch, pass));
+        MCR_TIMED(MCR_STAGE_CAMERA, status = camera(batch, pass));
         if (!status && !batch->rays)
             return;
         if (!status)

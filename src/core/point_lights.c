@@ -98,29 +98,38 @@ static void sum_nodes(struct builder *b)
     }
 }
 
+/* Suns with an extent are parts of the sky; what is black adds nothing. */
+static int is_point(const struct mcr_scene_light *light)
+{
+    return (light->kind != MCR_LIGHT_SUN || !(light->outer > 0)) && luminance_of(light) > 0;
+}
+
 int mcr_point_lights_create(struct mcr_arena *arena, const struct mcr_scene *scene, const struct mcr_point_lights **out)
 {
     uint32_t count = 0, suns = 0;
     double most = 0;
     *out = NULL;
+    for (uint32_t i = 0; i < scene->light_count; i++)
+        count += is_point(&scene->light[i]);
+    if (!count)
+        return 0;
     struct mcr_point_lights *all = mcr_arena_alloc(arena, 1, sizeof *all);
-    struct mcr_scene_light *light = mcr_arena_alloc(arena, scene->light_count, sizeof *light);
-    double *luminance = mcr_arena_alloc(arena, scene->light_count, sizeof *luminance);
+    struct mcr_scene_light *light = mcr_arena_alloc(arena, count, sizeof *light);
+    double *luminance = mcr_arena_alloc(arena, count, sizeof *luminance);
     if (!all || !light || !luminance)
         return -1;
+    count = 0;
     for (int pass = 0; pass < 2; pass++) { /* suns first; those that are black are left out */
         for (uint32_t i = 0; i < scene->light_count; i++) {
             const struct mcr_scene_light *from = &scene->light[i];
             int sun = from->kind == MCR_LIGHT_SUN;
-            if (sun == pass || (sun && from->outer > 0) || !(luminance_of(from) > 0))
+            if (sun == pass || !is_point(from))
                 continue;
             most = fmax(most, luminance_of(from));
             light[count++] = *from;
         }
         suns = pass == 0 ? count : suns;
     }
-    if (!count)
-        return 0;
     struct builder b = {.light = light, .luminance = luminance};
     if (count - suns > FEW) {
         b.node = mcr_arena_alloc(arena, 2 * (size_t)(count - suns), sizeof *b.node);

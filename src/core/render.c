@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Rendering: what is assembled for the scene, threads, and the order of passes. */
+/* Rendering: threads, and the order of passes. */
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -7,19 +8,12 @@
 #include "base/cpu.h"
 #include "base/random.h"
 #include "base/threads.h"
-#include "core/crossing.h"
-#include "core/groups.h"
-#include "core/host.h"
-#include "core/lights.h"
+#include "core/assemble.h"
 #include "core/pass.h"
 
-/* Rays in a batch by default: their arrays stay in the second-level cache (measured: `make bench`). */
-#define DEFAULT_BATCH 1024u
-/* Cells of a pass at least, where the pixels are few: a million samples, so that threads have enough to take. */
-#define PASS_CELLS MCR_TASK_CELLS
-
-const char *const mcr_stage_name[MCR_STAGE_COUNT] = {"camera",  "hit",   "sort",     "surface", "emission", "numbers",
-                                                     "sampler", "light", "material", "scatter", "compact",  "film"};
+const char *const mcr_stage_name[MCR_STAGE_COUNT] = {
+    "camera",   "hit",     "crossing", "sort",  "surface", "coordinates", "normals",  "inputs",  "textures", "interiors", "sky", "emission",
+    "numbers",  "sampler", "lobes",    "light", "points",  "material",    "roulette", "scatter", "compact",  "layers",    "film"};
 
 struct render {
     struct mcr_core core;
@@ -33,73 +27,6 @@ struct render {
     double begin, end;        /* directed: the running task's part of all */
     struct mcr_stages directed;
 };
-
-static const struct mcr_stages *stages_of(uint32_t isa)
-{
-#if MCR_ISA_COUNT > 1
-    return isa == MCR_ISA_AVX512 ? &mcr_stages_isa2 : isa == MCR_ISA_AVX2 ? &mcr_stages_isa1 : &mcr_stages_isa0;
-#else
-    (void)isa;
-    return &mcr_stages_isa0;
-#endif
-}
-
-static const struct mcr_accel_functions *trace_of(uint32_t isa, uint32_t kind)
-{
-    uint32_t k = kind == MCR_ACCEL_BVH;
-#if MCR_ISA_COUNT > 1
-    return isa == MCR_ISA_AVX512 ? &mcr_accel_functions_isa2[k] : isa == MCR_ISA_AVX2 ? &mcr_accel_functions_isa1[k] : &mcr_accel_functions_isa0[k];
-#else
-    (void)isa;
-    return &mcr_accel_functions_isa0[k];
-#endif
-}
-
-static const struct mcr_emitter_functions *lights_of(uint32_t isa)
-{
-#if MCR_ISA_COUNT > 1
-    return isa == MCR_ISA_AVX512 ? &mcr_emitter_functions_isa2 : isa == MCR_ISA_AVX2 ? &mcr_emitter_functions_isa1 : &mcr_emitter_functions_isa0;
-#else
-    (void)isa;
-    return &mcr_emitter_functions_isa0;
-#endif
-}
-
-/* Assembles the core for the scene. */
-static int prepare(struct render *render, const struct mcr_scene *scene, const struct mcr_accel *accel, const struct mcr_render_options *options)
-{
-    struct mcr_core *core = &render->core;
-    const struct mcr_node *directions = scene->sampler->directions;
-    const double *background = scene->render.background;
-    core->scene = scene;
-    core->accel = accel;
-    core->options = options;
-    core->features = options->features;
-    core->trace = trace_of(options->isa, accel->kind);
-    core->stages = stages_of(options->isa);
-    core->lights = lights_of(options->isa);
-    core->capacity = scene->render.batch ? (scene->render.batch + MCR_LANE_PAD - 1) / MCR_LANE_PAD * MCR_LANE_PAD : DEFAULT_BATCH;
-    core->needs_samples = scene->sampler->source_count > 0;
-    core->needs_pixel = (scene->sampler->needs & MCR_NEEDS_PIXEL) != 0;
-    core->background = background[0] > 0 || background[1] > 0 || background[2] > 0;
-    for (uint32_t t = 0; t < directions->technique_count; t++) {
-        core->dimensions += directions->technique[t].dimensions;
-        if (directions->technique[t].continues)
-            core->continuing = t;
-    }
-    core->combines = directions->technique_count > 1;
-    core->emitters = mcr_emitters_create(render->arena, scene);
-    if (!core->emitters || mcr_groups_init(core, render->arena) || mcr_surfaces_init(core, render->arena) || mcr_charts_init(core, render->arena) ||
-        mcr_crossing_init(core, render->arena))
-        return -1;
-    mcr_crossing_camera(core);
-    if (mcr_lights_init(core, render->arena) || mcr_point_lights_create(render->arena, scene, &core->point_lights))
-        return -1;
-    core->background |= core->sky != NULL;
-    mcr_host_init(core);
-    core->scratch_bytes = mcr_host_scratch(core);
-    return 0;
-}
 
 static void tick(void *data, const struct mcr_pass *pass)
 {
@@ -200,7 +127,7 @@ static int run_replicate(struct render *render, const struct mcr_cell_sink *sink
 {
     const struct mcr_render_options *options = render->core.options;
     struct mcr_pass *pass = &render->pass;
-    uint64_t at_once = PASS_CELLS / pass->pixels ? PASS_CELLS / pass->pixels : 1;
+    uint64_t at_once = MCR_TASK_CELLS / pass->pixels ? MCR_TASK_CELLS / pass->pixels : 1;
     pass->replicate_key = mcr_replicate_key(render->core.scene->render.seed, replicate);
     pass->planned = planned;
     for (uint32_t done = 0; done < planned;) {
@@ -226,6 +153,41 @@ static int run_all(struct render *render, const struct mcr_scene *scene, const s
         uint32_t planned = settings->spp / settings->replicates + (r < settings->spp % settings->replicates);
         if (run_replicate(render, sink, r, planned, stats))
             return -1;
+    }
+    return 0;
+}
+
+/*
+ * As much of the first replicate as its time allows: one sample of each pixel, by which the rest is judged and which does not count then, and more and
+ * more of them. The passes are those of a render, so that their times are.
+ */
+static int run_pilot(struct render *render, const struct mcr_cell_sink *sink, struct mcr_render_stats *stats)
+{
+    const struct mcr_render_settings *settings = &render->core.scene->render;
+    struct mcr_pass *pass = &render->pass;
+    const uint64_t at_once = MCR_TASK_CELLS / pass->pixels ? MCR_TASK_CELLS / pass->pixels : 1;
+    uint32_t planned = settings->spp / settings->replicates + (settings->spp % settings->replicates != 0), cell_samples = 1;
+    uint64_t blocks = 1;
+    double start = mcr_cpu_seconds();
+    pass->replicate_key = mcr_replicate_key(settings->seed, 0);
+    pass->planned = planned;
+    for (uint32_t done = 0; done < planned && blocks;) {
+        double before = mcr_cpu_seconds();
+        if (done == 1) {
+            memset(stats, 0, sizeof *stats);
+            render->samples_before = 0;
+        }
+        if (run_pass(render, sink, done, cell_samples, blocks, stats))
+            return -1;
+        done += (uint32_t)(blocks * cell_samples);
+        double now = mcr_cpu_seconds(), of_one = (now - start) / done;
+        stats->pass_seconds += now - before;
+        double room = fmin((render->core.options->pilot - (now - start)) / of_one, planned - done); /* NaN, where the clock is coarse: planned - done */
+        uint32_t more = room >= 1 ? (uint32_t)room : 0;
+        cell_samples = more < MCR_CELL_SAMPLES ? more : MCR_CELL_SAMPLES;
+        blocks = cell_samples ? more / cell_samples : 0;
+        blocks = blocks < at_once ? blocks : at_once;
+        blocks = blocks <= done / MCR_CELL_SAMPLES ? blocks : done / MCR_CELL_SAMPLES ? done / MCR_CELL_SAMPLES : blocks > 0;
     }
     return 0;
 }
@@ -290,7 +252,7 @@ int mcr_render(const struct mcr_scene *scene, const struct mcr_accel *accel, con
     pass->pixels = (uint64_t)(film->x1 - film->x0) * (film->y1 - film->y0);
     const struct mcr_director *director = options->director;
     const int channels = director ? director->channels : sink->add_channels != NULL;
-    uint64_t cells = pass->pixels > PASS_CELLS && !director ? pass->pixels : PASS_CELLS;
+    uint64_t cells = pass->pixels > MCR_TASK_CELLS && !director ? pass->pixels : MCR_TASK_CELLS;
     pass->cell = calloc(cells, sizeof *pass->cell);
     pass->channels = channels ? calloc(cells, sizeof *pass->channels) : NULL;
     pass->features = options->features ? calloc(cells, sizeof *pass->features) : NULL;
@@ -298,10 +260,12 @@ int mcr_render(const struct mcr_scene *scene, const struct mcr_accel *accel, con
     pass->tick = options->progress ? tick : NULL;
     pass->tick_data = &render;
     render.samples_total = pass->pixels * scene->render.spp;
-    if (short_of_memory || prepare(&render, scene, accel, options) || batches_create(&render)) {
+    if (short_of_memory || mcr_core_init(&render.core, render.arena, scene, accel, options) || batches_create(&render)) {
         snprintf(error, length, "out of memory");
     } else {
-        status = director ? run_directed(&render, director, stats) : run_all(&render, scene, sink, stats);
+        status = options->pilot > 0 ? run_pilot(&render, sink, stats)
+                 : director         ? run_directed(&render, director, stats)
+                                    : run_all(&render, scene, sink, stats);
         if (status)
             snprintf(error, length, "%s", pass->error);
     }

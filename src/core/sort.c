@@ -42,7 +42,8 @@ static uint32_t lay_out(struct mcr_batch *batch, uint32_t zone, uint32_t second,
     for (; n % MCR_LANE_PAD; n++) /* lanes between the groups are computed with too: copies of one */
         order[n] = order[0];
     batch->range[batch->range_count++] = (struct mcr_range){
-        .group = zone % groups, .begin = at, .end = at + count + more, .roulette = at + count / MCR_LANE_PAD * MCR_LANE_PAD, .ends = !second};
+        .group = zone % groups, .begin = at, .end = at + count + more, .ends = !second,
+        .roulette = more ? at + count / MCR_LANE_PAD * MCR_LANE_PAD : at + count};
     return at + n;
 }
 

@@ -31,6 +31,15 @@ struct mcr_film *mcr_film_create(uint32_t width, uint32_t height, int correlated
     return film;
 }
 
+uint64_t mcr_film_bytes(uint64_t pixels, int correlated, int channels, uint32_t planned, uint32_t replicates)
+{
+    uint64_t cells = (uint64_t)replicates * ((planned + MCR_CELL_SAMPLES - 1) / MCR_CELL_SAMPLES), levels = 1, full = MCR_FILM_RADIX;
+    for (; levels < MCR_FILM_LEVELS && cells > full; full *= MCR_FILM_RADIX) /* a level carries when the next child comes */
+        levels++;
+    uint64_t numbers = levels * (channels && !correlated ? 7 : 4) + (correlated ? channels ? 12 : 3 : 0);
+    return pixels * numbers * sizeof(double);
+}
+
 /* Independent samples need moments in the levels, as they come; replicates have means, and these their moments. */
 int mcr_film_keep_channels(struct mcr_film *film)
 {

@@ -70,5 +70,7 @@ struct mcr_image *mcr_image_read(const char *path, char *error, size_t length);
 
 /* 1 if the OpenImageIO module is installed and loads; it is loaded at the first question. */
 int mcr_image_module(char *error, size_t length);
+/* The module's file, if something has loaded it so far; else NULL. */
+const char *mcr_image_module_path(void);
 
 #endif

@@ -24,6 +24,7 @@
 static struct {
     int asked;
     const struct mcr_oiio *table;
+    char path[PATH_MAX]; /* once it is loaded */
     char error[300];
 } module;
 
@@ -60,7 +61,13 @@ static void load(void)
         mcr_image_fail(module.error, sizeof module.error, "'%.150s' belongs to another version of mcrender", path);
     } else {
         module.table = table;
+        memcpy(module.path, path, sizeof path);
     }
+}
+
+const char *mcr_image_module_path(void)
+{
+    return module.table ? module.path : NULL;
 }
 
 static const struct mcr_oiio *table_of(char *error, size_t length)

@@ -53,18 +53,18 @@ static void defaults(void)
     ok(f->width == 512 && f->height == 512 && f->x0 == 0 && f->y0 == 0 && f->x1 == 512 && f->y1 == 512, "512 x 512, all of it");
     ok(f->filter == MCR_FILTER_BOX && f->filter_radius == 0.5 && !f->filter_edge, "a box filter");
     ok(f->exposure == 0 && f->tone.curve == MCR_TONE_LINEAR, "shown as it is");
-    ok(r->spp == 16 && r->depth == 50 && r->seed == 0 && r->threads == 0 && r->batch == 0 && r->replicates == 1,
-       "16 spp, depth 50, seed 0");
+    ok(r->spp == 16 && r->depth == 50 && r->seed == 0 && r->threads == 0 && r->batch == 0 && r->replicates == 2,
+       "16 spp in 2 replicates, depth 50, seed 0");
     ok(r->roulette && r->roulette_from == 8 && !r->mis_power && r->accel == MCR_ACCEL_AUTO && mcr_largest(r->background) == 0,
        "roulette from 8, balance, auto, black");
-    ok(!world.scene->has_lights && strcmp(world.scene->sampler->expression, "cosine") == 0, "without light the sampler is cosine");
+    ok(!world.scene->has_lights && strcmp(world.scene->sampler->expression, "sobol(bsdf)") == 0 && world.scene->sampler_chosen, "without light the sampler is sobol(bsdf)");
     close_world(&world);
     world = open_world(CAMERA MATERIALS "sphere { center (0, 0, 5) radius 1 material lamp }\nplane { point (0, 0, 9) normal (0, 0, -1) material m }\n", NULL);
-    ok(world.scene && world.scene->sampler->directions->child_count == 2, "with light it is a mixture");
+    ok(world.scene && strcmp(world.scene->sampler->expression, "sobol(nee)") == 0, "with light it is sobol(nee)");
     close_world(&world);
     world = open_world(CAMERA MATERIALS "sphere { center (0, 0, 5) radius 1 material lamp }\nplane { point (0, 0, 9) normal (0, 0, -1) material lamp }\n",
                        NULL);
-    ok(world.scene && world.scene->sampler->directions->child_count == 0, "with an infinite plane that emits it is cosine again");
+    ok(world.scene && strcmp(world.scene->sampler->expression, "sobol(bsdf)") == 0, "with an infinite plane that emits it is sobol(bsdf) again");
     close_world(&world);
 }
 
