@@ -26,11 +26,12 @@ picture()
 equal_scene()
 {
     local scene=$1 spp=$2 depth=$3 sampler seed=2
-    local samplers=('mixture(bsdf 1, light 1)' 'sobol(nee)' 'stratified(mixture(bsdf 1, light 1))')
+    local samplers=(nee 'mixture(bsdf 1, light 1)' 'sobol(nee)' 'stratified(mixture(bsdf 1, light 1))')
     shift 3
-    # With lamps that are small, `bsdf` meets them so seldom that the spread of its replicates tells nothing: a scene that says how to enlarge them
-    # is compared with the lamps as they are without it, and with large ones with it.
-    [ "$wide" = no ] || samplers=(bsdf nee "${samplers[@]}")
+    case $with in
+    bsdf) samplers=(bsdf) ;;
+    all) samplers=(bsdf "${samplers[@]}") ;;
+    esac
     settings=("$@")
     picture reference "$scene" "$spp" nee 1 "$depth"
     for sampler in "${samplers[@]}"; do
@@ -43,20 +44,21 @@ equal_scene()
     done
 }
 
-# samples of one replicate; few where the noise is even
-wide=yes
+with=all
 equal_scene cornell-box 32 50
-equal_scene cornell-glass 256 20
+equal_scene cornell-glass 128 20
 equal_scene furnace 8 200
 equal_scene many-lights 32 6
 equal_scene still-life 64 8
 equal_scene every-shape 64 8
 equal_scene spheres-thinlens 32 8
-equal_scene mis 64 8 --set smallest=0.15
-equal_scene caustic 512 12 --set lamp=2.5
-equal_scene stained-mask 64 8 --set sun=20
-wide=no
+# `bsdf` meets small lamps so seldom that the spread of its replicates tells nothing: with the lamps as they are, the others; with large ones, `bsdf`.
+with=others
 equal_scene mis 64 8
-equal_scene caustic 256 12
+equal_scene caustic 64 12
 equal_scene stained-mask 64 8
+with=bsdf
+equal_scene mis 512 8 --set smallest=0.16
+equal_scene caustic 256 12 --set lamp=2.5
+equal_scene stained-mask 64 8 --set sun=20
 finish
