@@ -58,7 +58,7 @@ equal_scene mis 64 8
 equal_scene caustic 64 12
 equal_scene stained-mask 64 8
 with=bsdf
-equal_scene mis 512 8 --set smallest=0.16
+equal_scene mis 256 8 --set smallest=0.3
 equal_scene caustic 256 12 --set lamp=2.5
 equal_scene stained-mask 64 8 --set sun=20
 finish
