@@ -3,6 +3,7 @@
 
 #include <string.h>
 
+#include "core/control.h"
 #include "core/crossing.h"
 #include "core/groups.h"
 #include "core/host.h"
@@ -93,6 +94,8 @@ int mcr_core_init(struct mcr_core *core, struct mcr_arena *arena, const struct m
         return -1;
     core->tables.points = since(arena, &used);
     core->background |= core->sky != NULL;
+    if (mcr_control_init(core, arena))
+        return -1;
     mcr_host_init(core);
     core->scratch_bytes = mcr_host_scratch(core);
     return 0;

@@ -200,6 +200,8 @@ static void cut_all(struct cutter *c, struct mcr_batch *b)
     b->job = cut(c, MCR_JOBS, sizeof *b->job);
     b->camera_x = cut(c, rays, sizeof(double));
     b->camera_y = cut(c, rays, sizeof(double));
+    if (core->control >= 0)
+        b->controlled = cut(c, b->lanes, sizeof(double));
     if (core->combines)
         cut_light(c, &b->light, b->lanes);
     if ((core->combines || core->crosses) && core->varying_elsewhere)

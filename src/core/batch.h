@@ -163,6 +163,8 @@ struct mcr_core {
     uint32_t continuing;            /* the sampler's technique that continues paths */
     int combines;                   /* it has more than one technique */
     int lobes;                      /* some group has mirror-like lobes */
+    int32_t control;                /* the technique whose light comes in closed form where it is known, or -1: see control.h */
+    uint8_t *even;                  /* by emitter: whether it can */
     int background;                 /* it is not black, or there is a sky */
     uint32_t features;              /* MCR_FEATURE_*, 0: none */
     uint64_t scratch_bytes;         /* for all nested operations of one thread */
@@ -306,6 +308,7 @@ struct mcr_batch {
     double *alive;                  /* 1 or 0 */
     struct mcr_light_lanes light;
     struct mcr_lobes lobe;
+    double *controlled;             /* by point: 1 where light comes in closed form; NULL without control */
     struct mcr_crossing *crossing;  /* capacity */
     struct mcr_crossing_lanes crossing_lanes;
     struct mcr_point_lanes point;

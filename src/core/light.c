@@ -3,6 +3,7 @@
 
 #include <math.h>
 
+#include "core/control.h"
 #include "core/crossing.h"
 #include "core/host.h"
 #include "core/lobes.h"
@@ -98,6 +99,7 @@ static int32_t add_group(struct mcr_batch *batch, uint32_t g, uint32_t count)
         uint32_t k = l->of[c], slot = paths->slot[k];
         double h = heuristic(batch->core, l->density[k]);
         double weight = h / ((h + l->sum[k]) * l->density[k]);
+        weight = mcr_control_holds(batch, k, l->emitter[k]) ? -1 / l->density[k] : weight; /* hidden, see turn_hidden */
         batch->slot_r[slot] += paths->r[k] * l->fr[k] * l->lr[c] * weight;
         batch->slot_g[slot] += paths->g[k] * l->fg[k] * l->lg[c] * weight;
         batch->slot_b[slot] += paths->b[k] * l->fb[k] * l->lb[c] * weight;
@@ -271,10 +273,20 @@ static void add_background(struct mcr_batch *batch, const struct mcr_range *rang
     }
 }
 
+/* Of controlled light, the points that are hidden count, and no others: what keep_visible has told is turned round. */
+static void turn_hidden(struct mcr_batch *batch, const struct mcr_range *range)
+{
+    struct mcr_light_lanes *l = &batch->light;
+    for (uint32_t k = range->begin; k < range->end; k++)
+        if (l->emitter[k] >= 0 && worth_tracing(l, k) && !at_limit(batch, k) && mcr_control_holds(batch, k, l->emitter[k]))
+            l->primitive[k] = l->primitive[k] < 0 ? (int64_t)batch->core->emitters->emitter[l->emitter[k]].primitive : -1;
+}
+
 static int32_t lookup(struct mcr_batch *batch, const struct mcr_range *range, const struct mcr_points *at, uint32_t technique, double *const *number)
 {
     struct mcr_light_lanes *l = &batch->light;
-    const struct mcr_node *node = batch->core->scene->sampler->directions;
+    const struct mcr_core *core = batch->core;
+    const struct mcr_node *node = core->scene->sampler->directions;
     const uint32_t b = range->begin, n = at->n;
     int by_point = node->technique[technique].kind == MCR_TECHNIQUE_EMITTER;
     struct mcr_emitter_points points = emitter_points(l, b, n);
@@ -289,9 +301,11 @@ static int32_t lookup(struct mcr_batch *batch, const struct mcr_range *range, co
         status = mcr_group_evaluate(batch, range, &toward, &f);
     if (status)
         return status;
-    if (batch->core->group[range->group].lobes)
+    if (core->group[range->group].lobes)
         mcr_lobes_share(batch, range, &f);
     status = by_point ? keep_visible(batch, range) : trace_directions(batch, range, technique);
+    if (!status && core->control == (int32_t)technique)
+        turn_hidden(batch, range);
     if (!status)
         status = others(batch, technique, at, b, &toward, &points, l->sum);
     if (status)
@@ -308,6 +322,8 @@ int32_t mcr_light_lookups(struct mcr_batch *batch, const struct mcr_range *range
     const uint32_t b = range->begin;
     struct mcr_directions continuing = {sizeof continuing, at->n, batch->wx + b, batch->wy + b, batch->wz + b};
     int32_t status = others(batch, core->continuing, at, b, &continuing, NULL, l->others);
+    if (!status && core->control >= 0)
+        status = mcr_control_add(batch, range);
     for (uint32_t k = b; k < range->end; k++)
         l->own[k] = heuristic(core, batch->density[k]);
     uint32_t first = 0;
@@ -357,7 +373,7 @@ int32_t mcr_light_weights(struct mcr_batch *batch)
     for (uint32_t j = 0; j < batch->rays; j++) {
         uint32_t k = batch->source[j];
         int drawn = k < batch->points && !(core->lobes && batch->lobe.none[k] == 0);
-        l->weight[j] = drawn ? l->own[k] / (l->own[k] + l->sum[k]) : 1;
+        l->weight[j] = !drawn ? 1 : mcr_control_holds(batch, k, l->emitter[k]) ? 0 : l->own[k] / (l->own[k] + l->sum[k]);
     }
     return MCR_OK;
 }

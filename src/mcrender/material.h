@@ -27,6 +27,10 @@ extern "C" {
 #define MCR_MATERIAL_STATELESS 1u
 /* Operations read the tangents of struct mcr_points. */
 #define MCR_MATERIAL_TANGENTS 2u
+/* `evaluate` is albedo / pi times the cosine to the shading normal, for both directions on its side. */
+#define MCR_MATERIAL_LAMBERTIAN 4u
+/* What it emits, it emits from every point in every direction: the radiance of its traits, but for parameters that vary. */
+#define MCR_MATERIAL_EVEN 8u
 
 /* What the host has to know of a material before the first ray. */
 struct mcr_material_traits {
@@ -48,7 +52,7 @@ struct mcr_colours {
 
 struct mcr_material_plugin {
     struct mcr_descriptor head; /* kind MCR_KIND_MATERIAL */
-    uint32_t flags;             /* MCR_MATERIAL_STATELESS */
+    uint32_t flags;             /* MCR_MATERIAL_STATELESS, ... */
     uint32_t reserved;
 
     /* Main thread. Stores an immutable instance (NULL is a valid one). Varying parameters have their mean over the surface in `values`. */

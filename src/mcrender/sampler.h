@@ -135,8 +135,14 @@ struct mcr_technique {
     uint32_t covers;     /* MCR_COVERS_* */
     uint32_t continues;  /* 1 for the one direction technique that continues the path; others only look for emitted light */
     uint32_t dimensions; /* numbers in [0,1) that one draw takes; all techniques of a tree together at most 16 */
-    uint32_t reserved;
+    uint32_t flags;      /* MCR_TECHNIQUE_CONTROL, or 0 */
 };
+
+/*
+ * Of emitter techniques: where the unoccluded light of an emitter is known in closed form (polygons and spheres whose material is MCR_MATERIAL_EVEN, over
+ * MCR_MATERIAL_LAMBERTIAN), the host adds it and takes the points drawn for an estimate of what is hidden. Elsewhere it changes nothing.
+ */
+#define MCR_TECHNIQUE_CONTROL 1u
 
 /* How an emitter is sampled. */
 #define MCR_LIGHT_BY_AREA 0u        /* uniform on its surface */

@@ -88,6 +88,8 @@ static const char *technique_mistake(const struct mcr_directions_plugin *plugin,
         return "draws points on emitters, but the plugin has no operation draw_emitter";
     if (technique->continues > 1 || (technique->continues && technique->kind != MCR_TECHNIQUE_DIRECTION))
         return "continues the path without drawing directions";
+    if (technique->flags & ~MCR_TECHNIQUE_CONTROL || (technique->flags && technique->kind != MCR_TECHNIQUE_EMITTER))
+        return "has flags that are unknown, or not for its kind";
     if (technique->covers & ~ALL_COVERS)
         return "covers something unknown";
     return NULL;
