@@ -40,11 +40,30 @@ struct mcr_accel_shape {
 #define MCR_ACCEL_RECTANGLE 16u /* + axis */
 #define MCR_ACCEL_UPRIGHT 20u   /* + axis */
 
+/* Children of a node and items of a packet: what is tested at once. */
+#define MCR_BVH_WIDTH 8u
+
+/* Boxes of the children, rounded outward: side[0] the low ones, side[1] the high ones, by axis. Where there is no child, nothing is between them. */
 struct mcr_bvh_node {
-    double lo[3], hi[3];  /* rounded outward */
-    uint32_t first;       /* inner: the left child, the right one follows it; leaf: the first of its items */
-    uint32_t count;       /* leaf: items, else 0 */
+    double side[2][3][MCR_BVH_WIDTH];
+    uint32_t child[MCR_BVH_WIDTH]; /* a node; or the line of a packet and MCR_BVH_PACKET */
+    uint32_t padding[8];
 };
+#define MCR_BVH_PACKET 0x80000000u
+
+/*
+ * A leaf of the tree: items of one kind, and behind this line of 64 bytes their constants, a row of MCR_BVH_WIDTH for each: what
+ * struct mcr_accel_shape holds, or the vertices of triangles. The lanes beyond `count` repeat the first.
+ */
+struct mcr_bvh_packet {
+    uint32_t kind;        /* as in struct mcr_accel_shape, or MCR_ACCEL_TRIANGLE */
+    uint32_t count;
+    uint32_t primitive[MCR_BVH_WIDTH];
+    uint32_t padding[6];
+    double k[][MCR_BVH_WIDTH];
+};
+#define MCR_ACCEL_TRIANGLE 24u
+#define MCR_BVH_LINE 64u
 
 struct mcr_accel {
     uint32_t kind;        /* MCR_ACCEL_LIST or MCR_ACCEL_BVH */
@@ -56,8 +75,8 @@ struct mcr_accel {
     uint32_t plane_count;
     uint32_t *plane;                          /* shapes without bounds, asked for every ray */
     uint32_t node_count;
-    struct mcr_bvh_node *node;
-    uint32_t *item;                           /* a shape's index, or shape_count + a triangle's */
+    struct mcr_bvh_node *node;                /* the root first */
+    unsigned char *packet;                    /* struct mcr_bvh_packet, found by their lines */
 };
 
 /*

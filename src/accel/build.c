@@ -6,8 +6,6 @@
 
 #include "accel/accel.h"
 
-/* A tree's leaf holds at most this many items, unless they cannot be told apart. */
-#define LEAF_ITEMS 4u
 #define BINS 16
 /* Below this depth splits are by surface area, from it on at the median, so that no tree is deeper than this plus 32 levels (2^31 items). */
 #define SAH_DEPTH 48u
@@ -216,9 +214,22 @@ static void triangle_bounds(const struct mcr_triangles *triangles, uint32_t f, s
     bounds_pad(b);
 }
 
+/* A node of the tree of two children, from which the wide one is made. */
+struct branch {
+    struct bounds bounds;
+    uint32_t first;        /* inner: the left child, the right one follows it; leaf: the first of its items */
+    uint32_t count;        /* leaf: items, else 0 */
+};
+
 struct builder {
     struct mcr_accel *accel;
-    struct bounds *bounds; /* of each item, by its index before sorting */
+    const struct mcr_triangles *triangles;
+    struct bounds *bounds; /* of each item, by its number */
+    uint32_t *item;        /* a shape's index, or shape_count + a triangle's; sorted by the tree */
+    struct branch *branch;
+    uint32_t branch_count;
+    uint32_t node_count;   /* of the wide tree, so far */
+    uint32_t line_count;   /* of its packets */
 };
 
 static double centre(const struct builder *to, uint32_t item, int axis)
@@ -226,7 +237,13 @@ static double centre(const struct builder *to, uint32_t item, int axis)
     return to->bounds[item].lo[axis] / 2 + to->bounds[item].hi[axis] / 2;
 }
 
-/* Splits items by bins of equal width along one axis; returns the cost of the best split (areas times counts) and its bin. */
+/* Packets that so many items of one kind fill. */
+static double packets(uint32_t count)
+{
+    return (count + MCR_BVH_WIDTH - 1) / MCR_BVH_WIDTH;
+}
+
+/* Splits items by bins of equal width along one axis; returns the cost of the best split (areas times packets) and its bin. */
 static double best_split(const struct builder *to, const uint32_t *item, uint32_t count, int axis, double lo, double hi, int *split)
 {
     struct bounds bin[BINS];
@@ -254,7 +271,7 @@ static double best_split(const struct builder *to, const uint32_t *item, uint32_
         left_count += in[i];
         if (!left_count || left_count == count)
             continue;
-        cost = bounds_area(&left) * left_count + right_area[i + 1] * (count - left_count);
+        cost = bounds_area(&left) * packets(left_count) + right_area[i + 1] * packets(count - left_count);
         if (cost < best) {
             best = cost;
             *split = i;
@@ -298,40 +315,178 @@ static uint32_t partition(const struct builder *to, uint32_t *item, uint32_t cou
     return low && low < count ? low : count / 2;
 }
 
-static void build_node(struct builder *to, uint32_t number, uint32_t first, uint32_t count, uint32_t depth)
+static uint32_t kind_of(const struct builder *to, uint32_t item)
 {
-    struct mcr_accel *accel = to->accel;
-    struct mcr_bvh_node *node = &accel->node[number];
-    struct bounds b;
-    bounds_empty(&b);
+    return item < to->accel->shape_count ? to->accel->shape[item].kind : MCR_ACCEL_TRIANGLE;
+}
+
+/* Whether the items make one packet. */
+static int is_packet(const struct builder *to, const uint32_t *item, uint32_t count)
+{
+    if (count > MCR_BVH_WIDTH)
+        return 0;
+    for (uint32_t i = 1; i < count; i++)
+        if (kind_of(to, item[i]) != kind_of(to, item[0]))
+            return 0;
+    return 1;
+}
+
+static void build_branch(struct builder *to, uint32_t number, uint32_t first, uint32_t count, uint32_t depth)
+{
+    struct branch *branch = &to->branch[number];
+    bounds_empty(&branch->bounds);
     for (uint32_t i = 0; i < count; i++)
-        bounds_join(&b, &to->bounds[accel->item[first + i]]);
-    memcpy(node->lo, b.lo, sizeof b.lo);
-    memcpy(node->hi, b.hi, sizeof b.hi);
-    if (count <= LEAF_ITEMS) {
-        node->first = first;
-        node->count = count;
+        bounds_join(&branch->bounds, &to->bounds[to->item[first + i]]);
+    if (is_packet(to, to->item + first, count)) {
+        branch->first = first;
+        branch->count = count;
         return;
     }
-    uint32_t low = partition(to, accel->item + first, count, depth);
-    node->first = accel->node_count;
-    node->count = 0;
-    accel->node_count += 2;
-    build_node(to, accel->node[number].first, first, low, depth + 1);
-    build_node(to, accel->node[number].first + 1, first + low, count - low, depth + 1);
+    uint32_t low = partition(to, to->item + first, count, depth);
+    branch->first = to->branch_count;
+    branch->count = 0;
+    to->branch_count += 2;
+    build_branch(to, branch->first, first, low, depth + 1);
+    build_branch(to, branch->first + 1, first + low, count - low, depth + 1);
+}
+
+/* Rows of constants in a packet. */
+static uint32_t rows_of(uint32_t kind)
+{
+    switch (kind) {
+    case MCR_SHAPE_SPHERE:
+        return 5;
+    case MCR_SHAPE_BOX:
+        return 15;
+    case MCR_ACCEL_RECTANGLE:
+    case MCR_ACCEL_RECTANGLE + 1:
+    case MCR_ACCEL_RECTANGLE + 2:
+        return 5;
+    case MCR_ACCEL_UPRIGHT:
+    case MCR_ACCEL_UPRIGHT + 1:
+    case MCR_ACCEL_UPRIGHT + 2:
+        return 11;
+    case MCR_ACCEL_TRIANGLE:
+        return 9;
+    default: /* parallelogram, disk, ellipsoid */
+        return 12;
+    }
+}
+
+static void fill_packet(const struct builder *to, const struct branch *leaf, struct mcr_bvh_packet *packet)
+{
+    const struct mcr_triangles *m = to->triangles;
+    const uint32_t *item = to->item + leaf->first;
+    packet->kind = kind_of(to, item[0]);
+    packet->count = leaf->count;
+    for (uint32_t i = 0; i < MCR_BVH_WIDTH; i++) {
+        uint32_t from = item[i < leaf->count ? i : 0];
+        if (packet->kind != MCR_ACCEL_TRIANGLE) {
+            packet->primitive[i] = to->accel->shape[from].primitive;
+            for (uint32_t row = 0; row < rows_of(packet->kind); row++)
+                packet->k[row][i] = to->accel->shape[from].k[row];
+            continue;
+        }
+        uint32_t f = from - to->accel->shape_count;
+        packet->primitive[i] = m->first_primitive + f;
+        for (uint32_t j = 0; j < 3; j++) {
+            uint32_t v = m->vertex[f][j];
+            packet->k[3 * j][i] = m->x[v];
+            packet->k[3 * j + 1][i] = m->y[v];
+            packet->k[3 * j + 2][i] = m->z[v];
+        }
+    }
+}
+
+/* The child of a wide node that a branch becomes; in the first pass, without `node`, it is counted only. */
+static uint32_t make_packet(struct builder *to, const struct branch *leaf)
+{
+    uint32_t line = to->line_count;
+    to->line_count += 1 + rows_of(kind_of(to, to->item[leaf->first])) * MCR_BVH_WIDTH * (uint32_t)sizeof(double) / MCR_BVH_LINE;
+    if (to->accel->packet)
+        fill_packet(to, leaf, (struct mcr_bvh_packet *)(void *)(to->accel->packet + (size_t)line * MCR_BVH_LINE));
+    return line | MCR_BVH_PACKET;
+}
+
+/* The branches that become a node's children: those of the largest area are replaced by their two halves for as long as there is room. */
+static uint32_t open_branches(const struct builder *to, uint32_t number, uint32_t child[MCR_BVH_WIDTH])
+{
+    uint32_t count = 1;
+    for (child[0] = number; count < MCR_BVH_WIDTH; count++) {
+        int widest = -1;
+        double area = -1;
+        for (uint32_t i = 0; i < count; i++) {
+            const struct branch *branch = &to->branch[child[i]];
+            if (!branch->count && bounds_area(&branch->bounds) > area) {
+                area = bounds_area(&branch->bounds);
+                widest = (int)i;
+            }
+        }
+        if (widest < 0)
+            break;
+        uint32_t first = to->branch[child[widest]].first;
+        child[widest] = first;
+        child[count] = first + 1;
+    }
+    return count;
+}
+
+/* Two passes: the first, without accel->node, counts nodes and lines; the second fills them. Returns the node's number. */
+static uint32_t make_node(struct builder *to, uint32_t number)
+{
+    uint32_t child[MCR_BVH_WIDTH], made = to->node_count++, count = open_branches(to, number, child);
+    for (uint32_t i = 0; i < count; i++) {
+        const struct branch *branch = &to->branch[child[i]];
+        uint32_t is = branch->count ? make_packet(to, branch) : make_node(to, child[i]);
+        if (!to->accel->node)
+            continue;
+        struct mcr_bvh_node *node = &to->accel->node[made];
+        node->child[i] = is;
+        for (int j = 0; j < 3; j++) {
+            node->side[0][j][i] = branch->bounds.lo[j];
+            node->side[1][j][i] = branch->bounds.hi[j];
+        }
+    }
+    for (uint32_t i = count; to->accel->node && i < MCR_BVH_WIDTH; i++)
+        for (int j = 0; j < 3; j++) {
+            to->accel->node[made].side[0][j][i] = INFINITY;
+            to->accel->node[made].side[1][j][i] = -INFINITY;
+        }
+    return made;
+}
+
+static int make_tree(struct mcr_arena *arena, struct builder *to, uint32_t bounded)
+{
+    struct mcr_accel *accel = to->accel;
+    if (!bounded)
+        return 0;
+    to->branch = malloc(2 * (size_t)bounded * sizeof *to->branch);
+    if (!to->branch)
+        return -1;
+    to->branch_count = 1;
+    build_branch(to, 0, 0, bounded, 0);
+    make_node(to, 0);
+    accel->node_count = to->node_count;
+    accel->packet = mcr_arena_alloc(arena, to->line_count, MCR_BVH_LINE);
+    accel->node = accel->packet ? mcr_arena_alloc(arena, to->node_count, sizeof *accel->node) : NULL;
+    if (!accel->node)
+        return -1;
+    to->node_count = to->line_count = 0;
+    make_node(to, 0);
+    return 0;
 }
 
 static int build_tree(struct mcr_arena *arena, struct mcr_accel *accel, const struct mcr_scene *scene)
 {
-    size_t items = (size_t)scene->shape_count + scene->triangles.count, bounded = 0;
-    struct builder to = {accel, malloc((items ? items : 1) * sizeof *to.bounds)};
+    size_t items = (size_t)scene->shape_count + scene->triangles.count;
+    uint32_t bounded = 0;
+    struct builder to = {.accel = accel, .triangles = &scene->triangles};
+    int status = -1;
     accel->plane = mcr_arena_alloc(arena, scene->shape_count, sizeof *accel->plane);
-    accel->item = mcr_arena_alloc(arena, items, sizeof *accel->item);
-    accel->node = mcr_arena_alloc(arena, 2 * items + 1, sizeof *accel->node);
-    if (!to.bounds || !accel->plane || !accel->item || !accel->node) {
-        free(to.bounds);
-        return -1;
-    }
+    to.bounds = malloc((items + 1) * sizeof *to.bounds);
+    to.item = malloc((items + 1) * sizeof *to.item);
+    if (!accel->plane || !to.bounds || !to.item)
+        goto done;
     for (uint32_t i = 0; i < items; i++) {
         if (i >= scene->shape_count)
             triangle_bounds(&scene->triangles, i - scene->shape_count, &to.bounds[i]);
@@ -341,14 +496,14 @@ static int build_tree(struct mcr_arena *arena, struct mcr_accel *accel, const st
             accel->plane[accel->plane_count++] = i;
             continue;
         }
-        accel->item[bounded++] = i;
+        to.item[bounded++] = i;
     }
-    if (bounded) {
-        accel->node_count = 1;
-        build_node(&to, 0, 0, (uint32_t)bounded, 0);
-    }
+    status = make_tree(arena, &to, bounded);
+done:
     free(to.bounds);
-    return 0;
+    free(to.item);
+    free(to.branch);
+    return status;
 }
 
 struct mcr_accel *mcr_accel_create(struct mcr_arena *arena, const struct mcr_scene *scene, uint32_t kind)

@@ -1,177 +1,274 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The tree of boxes: one ray after the other through it, nearest child first. Stage file, compiled once per instruction set. */
+/*
+ * The tree of boxes: one ray after the other through it, all children of a node at once and the nearest of them first; at its leaves packets of
+ * shapes of one kind, all at once as well. Stage file, compiled once per instruction set.
+ */
 #include "accel/isa.h"
 #include "accel/kernels.h"
 
-/* Levels of the tree at most; the builder keeps below (accel/build.c). */
-#define STACK 96
+#define WIDTH MCR_BVH_WIDTH
+
+/* Levels of the tree at most, of which each leaves up to WIDTH - 1 children waiting; the builder keeps below (accel/build.c). */
+#define LEVELS 96
+#define STACK (LEVELS * (WIDTH - 1) + 1)
+
+/*
+ * Distances to boxes are off by 7 u at most (difference, inverse: 5, product; 1 more for `leave`). What is compared with the nearer side is moved
+ * out by more than twice that, which makes the test conservative (Ize, "Robust BVH ray traversal", JCGT 2(2), 2013).
+ */
+#define WIDEN (1 + 32 * 0x1p-53)
 
 struct ray {
     double o[3], d[3], inverse[3];
+    double leave[3]; /* the inverses, widened */
+    uint32_t up[3];  /* the directions' signs: 1 where they do not go down */
     struct mcr_shear shear;
 };
 
-static struct ray ray_of(const struct mcr_rays *rays, uint32_t i, int triangles)
-{
-    struct ray ray = {.o = {rays->ox[i], rays->oy[i], rays->oz[i]}, .d = {rays->dx[i], rays->dy[i], rays->dz[i]}};
-    kernel_inverse(ray.d[0], ray.d[1], ray.d[2], ray.inverse);
-    if (triangles)
-        ray.shear = kernel_shear(ray.d[0], ray.d[1], ray.d[2]);
-    return ray;
-}
-
-/*
- * Where the ray enters the box, or +infinity. The far side is moved out by twice the error of a distance, 7 u (difference, inverse: 5, product), which
- * makes the test conservative (Ize, "Robust BVH ray traversal", JCGT 2(2), 2013). The inverses are finite, so nothing is NaN.
- */
-static double enter_box(const struct mcr_bvh_node *node, const struct ray *ray, double far)
-{
-    const double widen = 1 + 16 * 0x1p-53;
-    double enter = 0, leave = far;
-    for (int j = 0; j < 3; j++) {
-        int up = ray->inverse[j] >= 0;
-        double a = ((up ? node->lo[j] : node->hi[j]) - ray->o[j]) * ray->inverse[j];
-        double b = ((up ? node->hi[j] : node->lo[j]) - ray->o[j]) * ray->inverse[j] * widen;
-        enter = a > enter ? a : enter;
-        leave = b < leave ? b : leave;
-    }
-    return enter <= leave * widen ? enter : INFINITY;
-}
-
-/* Whether the item is crossed; *number is its primitive. */
-static int item_hit(const struct mcr_accel *accel, uint32_t item, const struct ray *r, int64_t *number, double *t)
-{
-    const double *o = r->o, *d = r->d;
-    if (item >= accel->shape_count) {
-        const struct mcr_triangles *m = accel->triangles;
-        uint32_t f = item - accel->shape_count;
-        const uint32_t *v = m->vertex[f];
-        *number = (int64_t)m->first_primitive + f;
-        return kernel_triangle(&r->shear, m->x[v[0]], m->y[v[0]], m->z[v[0]], m->x[v[1]], m->y[v[1]], m->z[v[1]], m->x[v[2]], m->y[v[2]],
-                               m->z[v[2]], o[0], o[1], o[2], t);
-    }
-    const struct mcr_accel_shape *shape = &accel->shape[item];
-    *number = shape->primitive;
-    switch (shape->kind) {
-    case MCR_SHAPE_PLANE:
-        return kernel_plane(shape->k, o[0], o[1], o[2], d[0], d[1], d[2], t);
-    case MCR_SHAPE_SPHERE:
-        return kernel_sphere(shape->k, o[0], o[1], o[2], d[0], d[1], d[2], t);
-    case MCR_SHAPE_ELLIPSOID:
-        return kernel_ellipsoid(shape->k, o[0], o[1], o[2], d[0], d[1], d[2], t);
-    case MCR_SHAPE_PARALLELOGRAM:
-        return kernel_parallelogram(shape->k, o[0], o[1], o[2], d[0], d[1], d[2], t);
-    case MCR_SHAPE_DISK:
-        return kernel_disk(shape->k, o[0], o[1], o[2], d[0], d[1], d[2], t);
-    case MCR_ACCEL_RECTANGLE:
-        return kernel_rectangle(shape->k, o[0], r->inverse[0], o[1], d[1], o[2], d[2], t);
-    case MCR_ACCEL_RECTANGLE + 1:
-        return kernel_rectangle(shape->k, o[1], r->inverse[1], o[2], d[2], o[0], d[0], t);
-    case MCR_ACCEL_RECTANGLE + 2:
-        return kernel_rectangle(shape->k, o[2], r->inverse[2], o[0], d[0], o[1], d[1], t);
-    default: {
-        double face;
-        int hit;
-        if (shape->kind == MCR_ACCEL_UPRIGHT)
-            hit = kernel_upright(shape->k, 0, o[0], r->inverse[0], o[1], d[1], o[2], d[2], &face, t);
-        else if (shape->kind == MCR_ACCEL_UPRIGHT + 1)
-            hit = kernel_upright(shape->k, 1, o[1], r->inverse[1], o[2], d[2], o[0], d[0], &face, t);
-        else if (shape->kind == MCR_ACCEL_UPRIGHT + 2)
-            hit = kernel_upright(shape->k, 2, o[2], r->inverse[2], o[0], d[0], o[1], d[1], &face, t);
-        else
-            hit = kernel_box(shape->k, o[0], o[1], o[2], d[0], d[1], d[2], &face, t);
-        *number += (int64_t)face;
-        return hit;
-    }
-    }
-}
+/* What a block of rays has in common with the list's: everything that can be done for all of them at once. */
+struct block {
+    _Alignas(64) double inverse[3][MCR_ACCEL_BLOCK];
+    _Alignas(64) double form[9][MCR_ACCEL_BLOCK];  /* struct mcr_shear, where there are triangles */
+    _Alignas(64) double t[MCR_ACCEL_BLOCK];
+    _Alignas(64) double primitive[MCR_ACCEL_BLOCK]; /* whole numbers; -1: nothing met */
+};
 
 struct best {
     double t;
     int64_t primitive;
 };
 
-static void consider(const struct mcr_accel *accel, uint32_t item, const struct ray *ray, struct best *best)
+/* Where the ray enters each child's box, or +infinity. The inverses are finite and not 0, so nothing is NaN. */
+static inline __attribute__((always_inline)) void enter_boxes(const struct mcr_bvh_node *node, const struct ray *ray, double limit, double *enter)
 {
-    int64_t number;
-    double t;
-    if (!item_hit(accel, item, ray, &number, &t))
-        return;
-    if (t < best->t || (t == best->t && best->primitive >= 0 && number < best->primitive)) {
-        best->t = t;
-        best->primitive = number;
+    const double *nx = node->side[1 - ray->up[0]][0], *fx = node->side[ray->up[0]][0];
+    const double *ny = node->side[1 - ray->up[1]][1], *fy = node->side[ray->up[1]][1];
+    const double *nz = node->side[1 - ray->up[2]][2], *fz = node->side[ray->up[2]][2];
+    const double ox = ray->o[0], oy = ray->o[1], oz = ray->o[2];
+    const double ix = ray->inverse[0], iy = ray->inverse[1], iz = ray->inverse[2];
+    const double lx = ray->leave[0], ly = ray->leave[1], lz = ray->leave[2];
+    MCR_LANES
+    for (uint32_t i = 0; i < WIDTH; i++) {
+        double ax = (nx[i] - ox) * ix, ay = (ny[i] - oy) * iy, az = (nz[i] - oz) * iz;
+        double bx = (fx[i] - ox) * lx, by = (fy[i] - oy) * ly, bz = (fz[i] - oz) * lz;
+        double a = ax > ay ? ax : ay, b = bx < by ? bx : by;
+        az = az > 0 ? az : 0;
+        bz = bz < limit ? bz : limit;
+        a = a > az ? a : az;
+        b = b < bz ? b : bz;
+        enter[i] = a <= b ? a : INFINITY;
+    }
+}
+
+/* Each lane's crossing, or +infinity. CALL works on row(j): constant j of the lane's shape. */
+#define LANES(CALL)                                                                                                                     \
+    do {                                                                                                                                \
+        MCR_LANES                                                                                                                       \
+        for (uint32_t i = 0; i < WIDTH; i++) {                                                                                          \
+            double at;                                                                                                                  \
+            int hit = CALL;                                                                                                             \
+            t[i] = hit ? at : INFINITY;                                                                                                 \
+        }                                                                                                                               \
+    } while (0)
+#define FACES(CALL)                                                                                                                     \
+    do {                                                                                                                                \
+        MCR_LANES                                                                                                                       \
+        for (uint32_t i = 0; i < WIDTH; i++) {                                                                                          \
+            double at, side;                                                                                                            \
+            int hit = CALL;                                                                                                             \
+            t[i] = hit ? at : INFINITY;                                                                                                 \
+            face[i] = side;                                                                                                             \
+        }                                                                                                                               \
+    } while (0)
+#define K5 ((double[]){k[0][i], k[1][i], k[2][i], k[3][i], k[4][i]})
+#define K11 ((double[]){k[0][i], k[1][i], k[2][i], k[3][i], k[4][i], k[5][i], k[6][i], k[7][i], k[8][i], k[9][i], k[10][i]})
+#define K12 ((double[]){k[0][i], k[1][i], k[2][i], k[3][i], k[4][i], k[5][i], k[6][i], k[7][i], k[8][i], k[9][i], k[10][i], k[11][i]})
+#define K15 ((double[]){k[0][i], k[1][i], k[2][i], k[3][i], k[4][i], k[5][i], k[6][i], k[7][i], k[8][i], k[9][i], k[10][i], k[11][i], k[12][i], k[13][i], k[14][i]})
+
+static inline __attribute__((always_inline)) void cross_packet(const struct mcr_bvh_packet *packet, const struct ray *r, double *t, double *face)
+{
+    const double (*k)[WIDTH] = packet->k;
+    const double ox = r->o[0], oy = r->o[1], oz = r->o[2], dx = r->d[0], dy = r->d[1], dz = r->d[2];
+    const double ix = r->inverse[0], iy = r->inverse[1], iz = r->inverse[2];
+    const struct mcr_shear shear = r->shear;
+    switch (packet->kind) {
+    case MCR_ACCEL_TRIANGLE:
+        LANES(kernel_triangle(&shear, k[0][i], k[1][i], k[2][i], k[3][i], k[4][i], k[5][i], k[6][i], k[7][i], k[8][i], ox, oy, oz, &at));
+        break;
+    case MCR_SHAPE_SPHERE:
+        LANES(kernel_sphere(K5, ox, oy, oz, dx, dy, dz, &at));
+        break;
+    case MCR_SHAPE_ELLIPSOID:
+        LANES(kernel_ellipsoid(K12, ox, oy, oz, dx, dy, dz, &at));
+        break;
+    case MCR_SHAPE_PARALLELOGRAM:
+        LANES(kernel_parallelogram(K12, ox, oy, oz, dx, dy, dz, &at));
+        break;
+    case MCR_SHAPE_DISK:
+        LANES(kernel_disk(K12, ox, oy, oz, dx, dy, dz, &at));
+        break;
+    case MCR_ACCEL_RECTANGLE:
+        LANES(kernel_rectangle(K5, ox, ix, oy, dy, oz, dz, &at));
+        break;
+    case MCR_ACCEL_RECTANGLE + 1:
+        LANES(kernel_rectangle(K5, oy, iy, oz, dz, ox, dx, &at));
+        break;
+    case MCR_ACCEL_RECTANGLE + 2:
+        LANES(kernel_rectangle(K5, oz, iz, ox, dx, oy, dy, &at));
+        break;
+    case MCR_ACCEL_UPRIGHT:
+        FACES(kernel_upright(K11, 0, ox, ix, oy, dy, oz, dz, &side, &at));
+        break;
+    case MCR_ACCEL_UPRIGHT + 1:
+        FACES(kernel_upright(K11, 1, oy, iy, oz, dz, ox, dx, &side, &at));
+        break;
+    case MCR_ACCEL_UPRIGHT + 2:
+        FACES(kernel_upright(K11, 2, oz, iz, ox, dx, oy, dy, &side, &at));
+        break;
+    default:
+        FACES(kernel_box(K15, ox, oy, oz, dx, dy, dz, &side, &at));
+    }
+}
+
+/* Takes what is nearer than the best so far; of equal ones the lower primitive. Lanes that are not used repeat the first, so that they change nothing. */
+static inline __attribute__((always_inline)) void consider(const struct mcr_bvh_packet *packet, const struct ray *ray, struct best *best)
+{
+    _Alignas(64) double t[WIDTH], face[WIDTH];
+    int faces = packet->kind == MCR_SHAPE_BOX || (packet->kind >= MCR_ACCEL_UPRIGHT && packet->kind < MCR_ACCEL_TRIANGLE);
+    cross_packet(packet, ray, t, face);
+    for (uint32_t i = 0; i < packet->count; i++) {
+        if (!(t[i] <= best->t))
+            continue;
+        int64_t number = (int64_t)packet->primitive[i] + (faces ? (int64_t)face[i] : 0);
+        if (t[i] < best->t || (best->primitive >= 0 && number < best->primitive)) {
+            best->t = t[i];
+            best->primitive = number;
+        }
     }
 }
 
 /* The nearest crossing before best->t; with `any`, the first that is found. */
-static void traverse(const struct mcr_accel *accel, const struct ray *ray, struct best *best, int any)
+static inline __attribute__((always_inline)) void traverse(const struct mcr_accel *accel, const struct ray *ray, struct best *best, int any)
 {
     struct {
-        uint32_t node;
         double enter;
+        uint32_t child;
     } stack[STACK];
-    uint32_t top = 0;
-    for (uint32_t p = 0; p < accel->plane_count; p++)
-        consider(accel, accel->plane[p], ray, best);
-    if (!accel->node_count || (any && best->primitive >= 0))
-        return;
-    double enter = enter_box(&accel->node[0], ray, best->t);
-    if (enter < INFINITY) {
-        stack[0].node = 0;
-        stack[0].enter = enter;
-        top = 1;
-    }
+    _Alignas(64) double enter[WIDTH];
+    uint32_t top = 1;
+    stack[0].child = 0;
+    stack[0].enter = 0;
     while (top) {
         top--;
-        const struct mcr_bvh_node *node = &accel->node[stack[top].node];
-        if (stack[top].enter > best->t * (1 + 16 * 0x1p-53))
+        uint32_t child = stack[top].child;
+        if (stack[top].enter > best->t * WIDEN)
             continue;
-        if (node->count) {
-            for (uint32_t j = 0; j < node->count; j++)
-                consider(accel, accel->item[node->first + j], ray, best);
+        if (child & MCR_BVH_PACKET) {
+            consider((const struct mcr_bvh_packet *)(const void *)(accel->packet + (size_t)(child ^ MCR_BVH_PACKET) * MCR_BVH_LINE), ray, best);
             if (any && best->primitive >= 0)
                 return;
             continue;
         }
-        double left = enter_box(&accel->node[node->first], ray, best->t);
-        double right = enter_box(&accel->node[node->first + 1], ray, best->t);
-        uint32_t near = node->first, far = node->first + 1;
-        if (right < left) {
-            double swap = left;
-            left = right;
-            right = swap;
-            near = node->first + 1;
-            far = node->first;
-        }
-        if (right < INFINITY) {
-            stack[top].node = far;
-            stack[top++].enter = right;
-        }
-        if (left < INFINITY) {
-            stack[top].node = near;
-            stack[top++].enter = left;
+        const struct mcr_bvh_node *node = &accel->node[child];
+        enter_boxes(node, ray, best->t * WIDEN, enter);
+        uint32_t bottom = top;
+        for (uint32_t i = 0; i < WIDTH; i++) {
+            if (!(enter[i] < INFINITY))
+                continue;
+            uint32_t at = top++;
+            for (; !any && at > bottom && stack[at - 1].enter < enter[i]; at--)
+                stack[at] = stack[at - 1];
+            stack[at].enter = enter[i];
+            stack[at].child = node->child[i];
         }
     }
 }
 
+/* The planes, and what the tree needs of each ray, for the rays from `first` on. */
+static void block_begin(const struct mcr_accel *accel, const struct mcr_rays *rays, uint32_t first, uint32_t count, const double *far, struct block *b)
+{
+    const double *ox = rays->ox + first, *oy = rays->oy + first, *oz = rays->oz + first;
+    const double *dx = rays->dx + first, *dy = rays->dy + first, *dz = rays->dz + first;
+    uint32_t padded = (count + MCR_LANE_PAD - 1) / MCR_LANE_PAD * MCR_LANE_PAD;
+    for (uint32_t i = 0; i < padded; i++) {
+        b->t[i] = far && i < count ? far[first + i] : INFINITY;
+        b->primitive[i] = -1;
+    }
+    MCR_LANES
+    for (uint32_t i = 0; i < padded; i++) {
+        double inverse[3];
+        kernel_inverse(dx[i], dy[i], dz[i], inverse);
+        b->inverse[0][i] = inverse[0];
+        b->inverse[1][i] = inverse[1];
+        b->inverse[2][i] = inverse[2];
+    }
+    if (accel->triangles->count) {
+        MCR_LANES
+        for (uint32_t i = 0; i < padded; i++) {
+            struct mcr_shear s = kernel_shear(dx[i], dy[i], dz[i]);
+            for (int j = 0; j < 3; j++) {
+                b->form[j][i] = s.p[j];
+                b->form[3 + j][i] = s.q[j];
+                b->form[6 + j][i] = s.r[j];
+            }
+        }
+    }
+    for (uint32_t p = 0; p < accel->plane_count; p++) {
+        const struct mcr_accel_shape *plane = &accel->shape[accel->plane[p]];
+        const double k[6] = {plane->k[0], plane->k[1], plane->k[2], plane->k[3], plane->k[4], plane->k[5]}, number = plane->primitive;
+        MCR_LANES
+        for (uint32_t i = 0; i < padded; i++) {
+            double t, was = b->primitive[i], best = b->t[i];
+            int nearer = kernel_plane(k, ox[i], oy[i], oz[i], dx[i], dy[i], dz[i], &t) & (t < best);
+            b->primitive[i] = nearer ? number : was;
+            b->t[i] = nearer ? t : best;
+        }
+    }
+}
+
+static inline __attribute__((always_inline)) struct best block_ray(const struct mcr_accel *accel, const struct mcr_rays *rays, uint32_t first, uint32_t i, const struct block *b, int any)
+{
+    struct best best = {b->t[i], (int64_t)b->primitive[i]};
+    if (!accel->node_count || (any && best.primitive >= 0))
+        return best;
+    uint32_t n = first + i;
+    struct ray ray = {.o = {rays->ox[n], rays->oy[n], rays->oz[n]}, .d = {rays->dx[n], rays->dy[n], rays->dz[n]}};
+    for (int j = 0; j < 3; j++) {
+        ray.inverse[j] = b->inverse[j][i];
+        ray.leave[j] = b->inverse[j][i] * WIDEN;
+        ray.up[j] = b->inverse[j][i] >= 0;
+    }
+    for (int j = 0; j < 3 && accel->triangles->count; j++) {
+        ray.shear.p[j] = b->form[j][i];
+        ray.shear.q[j] = b->form[3 + j][i];
+        ray.shear.r[j] = b->form[6 + j][i];
+    }
+    traverse(accel, &ray, &best, any);
+    return best;
+}
+
 void MCR_ISA_NAME(mcr_bvh_closest)(const struct mcr_accel *accel, const struct mcr_rays *rays, double *t, int64_t *primitive)
 {
-    for (uint32_t i = 0; i < rays->n; i++) {
-        struct ray ray = ray_of(rays, i, accel->triangles->count != 0);
-        struct best best = {INFINITY, -1};
-        traverse(accel, &ray, &best, 0);
-        t[i] = best.t;
-        primitive[i] = best.primitive;
+    struct block block;
+    for (uint32_t first = 0; first < rays->n; first += MCR_ACCEL_BLOCK) {
+        uint32_t count = rays->n - first < MCR_ACCEL_BLOCK ? rays->n - first : MCR_ACCEL_BLOCK;
+        block_begin(accel, rays, first, count, NULL, &block);
+        for (uint32_t i = 0; i < count; i++) {
+            struct best best = block_ray(accel, rays, first, i, &block, 0);
+            t[first + i] = best.t;
+            primitive[first + i] = best.primitive;
+        }
     }
 }
 
 void MCR_ISA_NAME(mcr_bvh_visible)(const struct mcr_accel *accel, const struct mcr_rays *rays, const double *far, double *visible)
 {
-    for (uint32_t i = 0; i < rays->n; i++) {
-        struct ray ray = ray_of(rays, i, accel->triangles->count != 0);
-        struct best best = {far[i], -1};
-        traverse(accel, &ray, &best, 1);
-        visible[i] = best.primitive < 0 ? 1.0 : 0.0;
+    struct block block;
+    for (uint32_t first = 0; first < rays->n; first += MCR_ACCEL_BLOCK) {
+        uint32_t count = rays->n - first < MCR_ACCEL_BLOCK ? rays->n - first : MCR_ACCEL_BLOCK;
+        block_begin(accel, rays, first, count, far, &block);
+        for (uint32_t i = 0; i < count; i++)
+            visible[first + i] = block_ray(accel, rays, first, i, &block, 1).primitive < 0 ? 1.0 : 0.0;
     }
 }
 
