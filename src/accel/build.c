@@ -150,10 +150,13 @@ static void bounds_point(struct bounds *b, const double p[3])
     }
 }
 
+/* Each side by itself: joined with empty bounds, nothing changes. */
 static void bounds_join(struct bounds *b, const struct bounds *with)
 {
-    bounds_point(b, with->lo);
-    bounds_point(b, with->hi);
+    for (int j = 0; j < 3; j++) {
+        b->lo[j] = with->lo[j] < b->lo[j] ? with->lo[j] : b->lo[j];
+        b->hi[j] = with->hi[j] > b->hi[j] ? with->hi[j] : b->hi[j];
+    }
 }
 
 static double bounds_area(const struct bounds *b)
