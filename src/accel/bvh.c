@@ -10,7 +10,7 @@
 
 /* Levels of the tree at most, of which each leaves up to WIDTH - 1 children waiting; the builder keeps below (accel/build.c). */
 #define LEVELS 96
-#define STACK (LEVELS * (WIDTH - 1) + 1)
+#define STACK (LEVELS * WIDTH)
 
 /*
  * Distances to boxes are off by 7 u at most (difference, inverse: 5, product; 1 more for `leave`). What is compared with the nearer side is moved
@@ -130,12 +130,19 @@ static inline __attribute__((always_inline)) void cross_packet(const struct mcr_
     }
 }
 
-/* Takes what is nearer than the best so far; of equal ones the lower primitive. Lanes that are not used repeat the first, so that they change nothing. */
+static inline double least(double a, double b)
+{
+    return a < b ? a : b;
+}
+
+/* Takes what is nearer than the best so far; of equal ones the lower primitive. Lanes beyond the count repeat the first. */
 static inline __attribute__((always_inline)) void consider(const struct mcr_bvh_packet *packet, const struct ray *ray, struct best *best)
 {
     _Alignas(64) double t[WIDTH], face[WIDTH];
     int faces = packet->kind == MCR_SHAPE_BOX || (packet->kind >= MCR_ACCEL_UPRIGHT && packet->kind < MCR_ACCEL_TRIANGLE);
     cross_packet(packet, ray, t, face);
+    if (least(least(least(t[0], t[4]), least(t[1], t[5])), least(least(t[2], t[6]), least(t[3], t[7]))) > best->t)
+        return; /* most packets end here, with one branch */
     for (uint32_t i = 0; i < packet->count; i++) {
         if (!(t[i] <= best->t))
             continue;
@@ -147,40 +154,51 @@ static inline __attribute__((always_inline)) void consider(const struct mcr_bvh_
     }
 }
 
+/* A child that waits, and where the ray enters its box. */
+struct waiting {
+    double enter;
+    uint32_t child;
+};
+
+/* Sorts so that the nearest is the last, which is taken first. */
+static inline __attribute__((always_inline)) void sort_waiting(struct waiting *list, uint32_t count)
+{
+    for (uint32_t i = 1; i < count; i++) {
+        struct waiting one = list[i];
+        uint32_t at = i;
+        for (; at > 0 && list[at - 1].enter < one.enter; at--)
+            list[at] = list[at - 1];
+        list[at] = one;
+    }
+}
+
 /* The nearest crossing before best->t; with `any`, the first that is found. */
 static inline __attribute__((always_inline)) void traverse(const struct mcr_accel *accel, const struct ray *ray, struct best *best, int any)
 {
-    struct {
-        double enter;
-        uint32_t child;
-    } stack[STACK];
+    struct waiting stack[STACK];
     _Alignas(64) double enter[WIDTH];
     uint32_t top = 1;
-    stack[0].child = 0;
-    stack[0].enter = 0;
+    stack[0] = (struct waiting){0, 0};
     while (top) {
-        top--;
-        uint32_t child = stack[top].child;
-        if (stack[top].enter > best->t * WIDEN)
+        struct waiting next = stack[--top];
+        if (!any && next.enter > best->t * WIDEN)
             continue;
-        if (child & MCR_BVH_PACKET) {
-            consider((const struct mcr_bvh_packet *)(const void *)(accel->packet + (size_t)(child ^ MCR_BVH_PACKET) * MCR_BVH_LINE), ray, best);
+        if (next.child & MCR_BVH_PACKET) {
+            consider((const struct mcr_bvh_packet *)(const void *)(accel->packet + (size_t)(next.child ^ MCR_BVH_PACKET) * MCR_BVH_LINE), ray, best);
             if (any && best->primitive >= 0)
                 return;
             continue;
         }
-        const struct mcr_bvh_node *node = &accel->node[child];
+        const struct mcr_bvh_node *node = &accel->node[next.child];
         enter_boxes(node, ray, best->t * WIDEN, enter);
         uint32_t bottom = top;
-        for (uint32_t i = 0; i < WIDTH; i++) {
-            if (!(enter[i] < INFINITY))
-                continue;
-            uint32_t at = top++;
-            for (; !any && at > bottom && stack[at - 1].enter < enter[i]; at--)
-                stack[at] = stack[at - 1];
-            stack[at].enter = enter[i];
-            stack[at].child = node->child[i];
+        for (uint32_t i = 0; i < WIDTH; i++) { /* without branches: which boxes are entered is hard to foresee */
+            stack[top].enter = enter[i];
+            stack[top].child = node->child[i];
+            top += enter[i] < INFINITY;
         }
+        if (!any)
+            sort_waiting(stack + bottom, top - bottom);
     }
 }
 
