@@ -80,10 +80,10 @@ struct mcr_accel {
 };
 
 /*
- * Up to this many shapes and triangles `auto` takes the list. Both cost the same, by `make bench`, at 100-200 shapes with the baseline's
- * instructions, at 230-350 with AVX2 and at 500-700 with AVX-512.
+ * Up to this many shapes and triangles `auto` takes the list. Both cost the same, by `make bench` (list against bvh), at 30-65 shapes with the
+ * baseline's instructions, at 45-65 with AVX2 and at 70-100 with AVX-512.
  */
-#define MCR_ACCEL_LIST_LIMIT 192u
+#define MCR_ACCEL_LIST_LIMIT 96u
 
 /* kind: MCR_ACCEL_*; auto takes the list for few shapes. NULL when memory is short. */
 struct mcr_accel *mcr_accel_create(struct mcr_arena *arena, const struct mcr_scene *scene, uint32_t kind);
