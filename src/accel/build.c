@@ -232,7 +232,7 @@ struct builder {
     struct branch *branch;
     uint32_t branch_count;
     uint32_t node_count;   /* of the wide tree, so far */
-    uint32_t line_count;   /* of its packets */
+    uint64_t line_count;   /* of its packets */
 };
 
 static double centre(const struct builder *to, uint32_t item, int axis)
@@ -404,7 +404,7 @@ static void fill_packet(const struct builder *to, const struct branch *leaf, str
 /* The child of a wide node that a branch becomes; in the first pass, without `node`, it is counted only. */
 static uint32_t make_packet(struct builder *to, const struct branch *leaf)
 {
-    uint32_t line = to->line_count;
+    uint32_t line = (uint32_t)to->line_count;
     to->line_count += 1 + rows_of(kind_of(to, to->item[leaf->first])) * MCR_BVH_WIDTH * (uint32_t)sizeof(double) / MCR_BVH_LINE;
     if (to->accel->packet)
         fill_packet(to, leaf, (struct mcr_bvh_packet *)(void *)(to->accel->packet + (size_t)line * MCR_BVH_LINE));
@@ -469,6 +469,8 @@ static int make_tree(struct mcr_arena *arena, struct builder *to, uint32_t bound
     to->branch_count = 1;
     build_branch(to, 0, 0, bounded, 0);
     make_node(to, 0);
+    if (to->line_count > MCR_BVH_PACKET) /* 128 GiB: more than a child can name */
+        return -1;
     accel->node_count = to->node_count;
     accel->packet = mcr_arena_alloc(arena, to->line_count, MCR_BVH_LINE);
     accel->node = accel->packet ? mcr_arena_alloc(arena, to->node_count, sizeof *accel->node) : NULL;
