@@ -125,8 +125,8 @@ static int32_t create(const struct mcr_host *host, struct mcr_context *context, 
 static int32_t traits(const struct mcr_host *host, struct mcr_context *context, const void *instance, const struct mcr_values *values,
                       struct mcr_material_traits *traits)
 {
-    (void)host, (void)context, (void)instance, (void)values;
-    traits->does = MCR_MATERIAL_REFLECTS;
+    (void)host, (void)context, (void)instance;
+    traits->does = MCR_MATERIAL_REFLECTS | (values->given[ANISOTROPY] ? MCR_MATERIAL_LEANS : 0); /* what is isotropic does not ask for tangents */
     return MCR_OK;
 }
 
@@ -454,7 +454,7 @@ MCR_HIDDEN const struct mcr_material_plugin MCR_ISA_NAME(descriptor) = {
              .licence = "Apache-2.0",
              .summary = "rough metal: GGX microfacets with a complex index of refraction, two-sided",
              .parameters = parameters},
-    .flags = MCR_MATERIAL_STATELESS | MCR_MATERIAL_TANGENTS,
+    .flags = MCR_MATERIAL_STATELESS,
     .create = create,
     .traits = traits,
     .scratch_bytes = scratch_bytes,

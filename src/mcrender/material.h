@@ -21,11 +21,12 @@ extern "C" {
 #define MCR_MATERIAL_EMITS_BACK 16u
 #define MCR_MATERIAL_INTERIOR 32u   /* bounds a medium: `index`, `attenuation` and `priority` of its traits */
 #define MCR_MATERIAL_PASSES 64u     /* lets light cross straight on as if there were nothing, told by `passes` */
+#define MCR_MATERIAL_LEANS 128u     /* as it is set, reads the tangents of struct mcr_points: as MCR_MATERIAL_TANGENTS, but of one instance */
 
 /* Flags of descriptors. */
 /* Operations read mcr_inputs, not the instance: one call may hold points of several materials of this plugin (any stride may be 1 then). */
 #define MCR_MATERIAL_STATELESS 1u
-/* Operations read the tangents of struct mcr_points. */
+/* Operations of every instance read the tangents of struct mcr_points. */
 #define MCR_MATERIAL_TANGENTS 2u
 /* `evaluate` is albedo / pi times the cosine to the shading normal, for both directions on its side. */
 #define MCR_MATERIAL_LAMBERTIAN 4u

@@ -115,7 +115,7 @@ struct mcr_points {
     const double *ox, *oy, *oz; /* outgoing direction: toward where the path came from */
     const double *side;         /* +1 where the outgoing direction is on the front of the surface, -1 on its back */
     const double *wanted;       /* 0 in lanes whose results nobody looks at, which need not be computed; NULL: all are wanted */
-    const double *tx, *ty, *tz; /* tangent: unit, orthogonal to the shading normal, along growing u; NULL unless a material asks (MCR_MATERIAL_TANGENTS) */
+    const double *tx, *ty, *tz; /* tangent: unit, orthogonal to the shading normal, along growing u; NULL unless a material asks (MCR_MATERIAL_LEANS, _TANGENTS) */
     const double *here, *beyond; /* index of refraction on the side of the outgoing direction and on the other; NULL: no material has an interior */
 };
 

@@ -273,7 +273,7 @@ static void finish(struct mcr_build *build, struct mcr_scene_material *material)
     node->traits = traits;
     if (node->texture)
         material->needs |= MCR_NEEDS_COORDINATES;
-    if (plugin->flags & MCR_MATERIAL_TANGENTS)
+    if (plugin->flags & MCR_MATERIAL_TANGENTS || traits->does & MCR_MATERIAL_LEANS)
         material->needs |= MCR_NEEDS_TANGENTS;
     for (uint32_t k = 0; k < node->child_count; k++)
         material->needs |= build->scene->material[node->child[k]->number].needs;
