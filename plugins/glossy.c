@@ -274,6 +274,35 @@ static int32_t evaluate(const struct mcr_host *host, struct mcr_context *context
     return MCR_OK;
 }
 
+/* The coat's E and, for the base, what colour_lanes expects integrated over all directions: (1 - E(o)) (1 - <E>) / n^2. */
+static void integral_lanes(const struct coat *coat, const struct mcr_points *at, const double *alpha, double *restrict specular, double *restrict base)
+{
+    const double *nx = at->nx, *ny = at->ny, *nz = at->nz, *ox = at->ox, *oy = at->oy, *oz = at->oz, inverse = 1 / (coat->index * coat->index);
+    const int smooth = coat->smooth != 0;
+
+    for (uint32_t i = 0; i < at->n; i++) {
+        double c = nx[i] * ox[i] + ny[i] * oy[i] + nz[i] * oz[i], whole = mcr_within_unit_(mcr_row16_(coat->whole, 2 * sqrt(alpha[i]) - 1));
+        double e = smooth ? smooth_albedo(coat->index, c) : rough_albedo(coat, alpha[i], c);
+
+        specular[i] = e;
+        base[i] = (1 - e) * (1 - whole) * inverse;
+    }
+}
+
+/* To the errors of E's polynomials. */
+static int32_t albedo(const struct mcr_host *host, struct mcr_context *context, const void *instance, const struct mcr_inputs *inputs,
+                      const struct mcr_points *at, const struct mcr_colours *out)
+{
+    double *room = host->scratch(host, context), *channel[3] = {out->r, out->g, out->b};
+    const uint64_t stride = mcr_padded(at->n);
+    const double *alpha = alpha_lanes(at, inputs, room + ALPHA * stride);
+
+    integral_lanes(instance, at, alpha, room + SPECULAR * stride, room + BASE * stride);
+    for (uint32_t c = 0; c < 3; c++)
+        colour_lanes(at->n, instance, alpha, room + SPECULAR * stride, room + BASE * stride, inputs->channel[c], inputs->stride[c], channel[c]);
+    return MCR_OK;
+}
+
 /* The chance of the coat's lobe: its share of what is scattered, about, seen in grey. */
 static void share_lanes(const struct coat *coat, const struct mcr_points *at, const double *alpha, const double *red, const double *green,
                         const double *blue, double *restrict share)
@@ -432,6 +461,7 @@ MCR_HIDDEN const struct mcr_material_plugin MCR_ISA_NAME(descriptor) = {
     .draw = draw,
     .density = density,
     .delta = delta,
+    .albedo = albedo,
 };
 
 MCR_PLUGIN(struct mcr_material_plugin, descriptor);

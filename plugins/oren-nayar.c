@@ -167,6 +167,32 @@ static int32_t evaluate(const struct mcr_host *host, struct mcr_context *context
     return MCR_OK;
 }
 
+/* The directional albedo is albedo (E + (1 - E) albedo <E> / (1 - albedo (1 - <E>))): colour_lane of both parts' integrals. */
+static void integral_lanes(const struct mcr_points *at, const double *restrict sigma, uint32_t stride, double *restrict once, double *restrict more)
+{
+    const double *nx = at->nx, *ny = at->ny, *nz = at->nz, *ox = at->ox, *oy = at->oy, *oz = at->oz;
+
+    for (uint32_t i = 0; i < at->n; i++) {
+        double s = sigma[i * stride], rest = s / (1 + C1 * s) * lost(unit(nx[i] * ox[i] + ny[i] * oy[i] + nz[i] * oz[i]));
+        once[i] = 1 - rest;
+        more[i] = rest;
+    }
+}
+
+static int32_t albedo(const struct mcr_host *host, struct mcr_context *context, const void *instance, const struct mcr_inputs *inputs,
+                      const struct mcr_points *at, const struct mcr_colours *out)
+{
+    double *once = host->scratch(host, context), *more = once + padded(at->n), *result[3] = {out->r, out->g, out->b};
+    const double *sigma = inputs->channel[CHANNEL(SIGMA)];
+    uint32_t stride = inputs->stride[CHANNEL(SIGMA)];
+
+    (void)instance;
+    integral_lanes(at, sigma, stride, once, more);
+    for (uint32_t c = 0; c < 3; c++)
+        colour_lanes(at->n, once, more, inputs->channel[c], inputs->stride[c], sigma, stride, result[c]);
+    return MCR_OK;
+}
+
 /*
  * Drawn in proportion to the cosine, and with this chance uniformly: seen at grazing angles a rough surface has f cos far above the cosine near the
  * horizon, and the uniform share bounds f cos / density there.
@@ -248,6 +274,7 @@ MCR_HIDDEN const struct mcr_material_plugin MCR_ISA_NAME(descriptor) = {
     .evaluate = evaluate,
     .draw = draw,
     .density = density,
+    .albedo = albedo,
 };
 
 MCR_PLUGIN(struct mcr_material_plugin, descriptor);
