@@ -4,8 +4,8 @@
  *
  * Light that meets more than one microfacet is lost: a rough white metal is a few ten per cent too dark. `compensation` gives it back as a diffuse lobe,
  * (1 - E(o)) (1 - E(i)) / (pi (1 - <E>)) F_ms, Kulla and Conty, "Revisiting physically based shading at Imageworks" (2017), with
- * F_ms = <F>^2 <E> / (1 - <F> (1 - <E>)); E is the directional albedo of GGX without Fresnel's part and < > a mean weighted by the cosine. E is that of
- * the widths' root mean square where these differ.
+ * F_ms = <F>^2 <E> / (1 - <F> (1 - <E>)); E is the directional albedo of GGX without Fresnel's part and < > a mean weighted by the cosine. Where the
+ * widths differ, E is at least that: mcr_ggx_width.
  *
  * Of the directions drawn by visible normals, a share is reflected below the horizon and not drawn: there the density integrates to less than 1.
  */
@@ -131,7 +131,7 @@ static int32_t traits(const struct mcr_host *host, struct mcr_context *context, 
 }
 
 /* Arrays of scratch, of mcr_padded(n) doubles each. TANGENT and TURNED are 3. */
-enum { ALPHA, AX, AY, TANGENT, TURNED = TANGENT + 3, DEGREES = TURNED + 3, LEANING, SHAPE, COSINE, ETA_LANES, K_LANES, AGAIN, ARRAYS };
+enum { ALPHA, AX, AY, TANGENT, TURNED = TANGENT + 3, DEGREES = TURNED + 3, LEANING, SHAPE, COSINE, ETA_LANES, K_LANES, AGAIN, MEAN_LOST, PART, ARRAYS };
 
 static uint64_t scratch_bytes(const void *instance, uint32_t n)
 {
@@ -141,9 +141,9 @@ static uint64_t scratch_bytes(const void *instance, uint32_t n)
 
 /* ---- the surface ---- */
 
-/* Widths and tangents of the lanes. */
+/* Widths and tangents of the lanes; the width by which E is known, and the mean of 1 - E: only with compensation. */
 struct surface {
-    const double *alpha, *ax, *ay, *t[3];
+    const double *alpha, *lost, *ax, *ay, *t[3];
 };
 
 static void widths_lanes(uint32_t n, const double *alpha, const double *anisotropy, double *restrict ax, double *restrict ay)
@@ -155,10 +155,19 @@ static void widths_lanes(uint32_t n, const double *alpha, const double *anisotro
     }
 }
 
-static void mean_lanes(uint32_t n, const double *ax, const double *ay, double *restrict mean)
+static void one_width_lanes(uint32_t n, const double *ax, const double *ay, double *restrict alpha, double *restrict lost)
+{
+    for (uint32_t i = 0; i < n; i++) {
+        double same = mcr_ggx_mean_lost(ax[i]), leaning = mcr_ggx_width_mean_lost(ax[i], ay[i]), width = mcr_ggx_width(ax[i], ay[i]);
+        alpha[i] = ax[i] == ay[i] ? ax[i] : width;
+        lost[i] = ax[i] == ay[i] ? same : leaning;
+    }
+}
+
+static void mean_lost_lanes(uint32_t n, const double *alpha, double *restrict lost)
 {
     for (uint32_t i = 0; i < n; i++)
-        mean[i] = ax[i] == ay[i] ? ax[i] : sqrt(0.5 * (ax[i] * ax[i] + ay[i] * ay[i]));
+        lost[i] = mcr_ggx_mean_lost(alpha[i]);
 }
 
 /* t cos + (n x t) sin; t to the bit where there is no anisotropy, so that a lane's bits do not depend on its neighbours. */
@@ -181,6 +190,12 @@ static int differs(const struct mcr_inputs *inputs, uint32_t channel)
     return inputs->stride[channel] || inputs->channel[channel][0] != 0;
 }
 
+/* 1 where the material gives back what is lost. */
+static int compensates(const struct mcr_inputs *inputs)
+{
+    return differs(inputs, CHANNEL(COMPENSATION));
+}
+
 /* What is isotropic needs no particular tangent. */
 static void surface_lanes(const struct mcr_points *at, const struct mcr_inputs *inputs, double *room, struct surface *s)
 {
@@ -189,7 +204,10 @@ static void surface_lanes(const struct mcr_points *at, const struct mcr_inputs *
     const double *anisotropy;
 
     s->alpha = s->ax = s->ay = mcr_input_lanes(inputs, CHANNEL(ROUGHNESS), at->n, room + ALPHA * stride);
+    s->lost = room + MEAN_LOST * stride;
     mcr_tangent_lanes(at, room + TANGENT * stride, s->t);
+    if (!leans && compensates(inputs))
+        mean_lost_lanes(at->n, s->alpha, room + MEAN_LOST * stride);
     if (!leans)
         return;
     anisotropy = mcr_input_lanes(inputs, CHANNEL(ANISOTROPY), at->n, room + LEANING * stride);
@@ -201,14 +219,10 @@ static void surface_lanes(const struct mcr_points *at, const struct mcr_inputs *
         turn_lanes(at, s->t, degrees, anisotropy, turned, turned + stride, turned + 2 * stride);
         s->t[0] = turned, s->t[1] = turned + stride, s->t[2] = turned + 2 * stride;
     }
-    mean_lanes(at->n, s->ax, s->ay, room + DEGREES * stride);
-    s->alpha = room + DEGREES * stride;
-}
-
-/* 1 where the material gives back what is lost. */
-static int compensates(const struct mcr_inputs *inputs)
-{
-    return differs(inputs, CHANNEL(COMPENSATION));
+    if (compensates(inputs)) {
+        one_width_lanes(at->n, s->ax, s->ay, room + DEGREES * stride, room + MEAN_LOST * stride);
+        s->alpha = room + DEGREES * stride;
+    }
 }
 
 /* ---- Fresnel ---- */
@@ -263,10 +277,10 @@ static void mean_fresnel_lanes(uint32_t n, const double *eta, const double *k, d
 }
 
 /* out += again * F_ms */
-static void again_lanes(uint32_t n, const double *alpha, const double *again, const double *mean, uint32_t stride, double *restrict out)
+static void again_lanes(uint32_t n, const double *lost, const double *again, const double *mean, uint32_t stride, double *restrict out)
 {
     for (uint32_t i = 0; i < n; i++) {
-        double f = mean[i * stride], kept = 1 - mcr_ggx_mean_lost(alpha[i]);
+        double f = mean[i * stride], kept = 1 - lost[i];
         out[i] += again[i] * (f * f * kept / (1 - f * (1 - kept)));
     }
 }
@@ -291,19 +305,28 @@ static void shape_lanes(const struct mcr_points *at, const struct surface *s, co
     }
 }
 
+/* 1 - E of a direction in the frame. */
+MCR_INLINE double lost_lane(double alpha, double ax, double ay, struct mcr_vector v)
+{
+    double above = v.z > MCR_GGX_HORIZON ? v.z : MCR_GGX_HORIZON;
+    return mcr_ggx_lost_stretched(alpha, above / mcr_ggx_spread(ax, ay, mcr_vector(v.x, v.y, above)));
+}
+
 /* The diffuse lobe of the light that meets several facets, without its colour; 0 where it is not asked for. */
-static void lost_lanes(const struct mcr_points *at, const double *restrict x, const double *restrict y, const double *restrict z, const double *alpha,
-                       const double *asked, uint32_t stride, double *restrict again)
+static void lost_lanes(const struct mcr_points *at, const struct surface *s, const double *restrict x, const double *restrict y,
+                       const double *restrict z, const double *asked, uint32_t stride, double *restrict again)
 {
     const double *nx = at->nx, *ny = at->ny, *nz = at->nz, *gx = at->gx, *gy = at->gy, *gz = at->gz, *ox = at->ox, *oy = at->oy, *oz = at->oz;
+    const double *tx = s->t[0], *ty = s->t[1], *tz = s->t[2], *ax = s->ax, *ay = s->ay, *alpha = s->alpha, *lost = s->lost;
 
     for (uint32_t i = 0; i < at->n; i++) {
-        double out = nx[i] * ox[i] + ny[i] * oy[i] + nz[i] * oz[i], in = nx[i] * x[i] + ny[i] * y[i] + nz[i] * z[i];
+        struct mcr_frame f = mcr_frame(mcr_vector(nx[i], ny[i], nz[i]), mcr_vector(tx[i], ty[i], tz[i]));
+        struct mcr_vector o = mcr_to_frame(f, mcr_vector(ox[i], oy[i], oz[i])), w = mcr_to_frame(f, mcr_vector(x[i], y[i], z[i]));
         double above = gx[i] * x[i] + gy[i] * y[i] + gz[i] * z[i];
-        double f = in * MCR_PER_PI * mcr_ggx_lost(alpha[i], out) * mcr_ggx_lost(alpha[i], in) / mcr_ggx_mean_lost(alpha[i]);
-        int seen = (out > MCR_GGX_HORIZON) & (in > MCR_GGX_HORIZON) & (above > 0) & (asked[i * stride] != 0);
+        double value = w.z * MCR_PER_PI * lost_lane(alpha[i], ax[i], ay[i], o) * lost_lane(alpha[i], ax[i], ay[i], w) / lost[i];
+        int seen = (o.z > MCR_GGX_HORIZON) & (w.z > MCR_GGX_HORIZON) & (above > 0) & (asked[i * stride] != 0);
 
-        again[i] = seen ? f : 0;
+        again[i] = seen ? value : 0;
     }
 }
 
@@ -321,7 +344,7 @@ static int32_t evaluate(const struct mcr_host *host, struct mcr_context *context
     surface_lanes(at, inputs, room, &surface);
     shape_lanes(at, &surface, toward->x, toward->y, toward->z, shape, cosine);
     if (compensates(inputs))
-        lost_lanes(at, toward->x, toward->y, toward->z, surface.alpha, inputs->channel[CHANNEL(COMPENSATION)], s[CHANNEL(COMPENSATION)], again);
+        lost_lanes(at, &surface, toward->x, toward->y, toward->z, inputs->channel[CHANNEL(COMPENSATION)], s[CHANNEL(COMPENSATION)], again);
     for (uint32_t c = 0; c < 3; c++) {
         uint32_t varies = s[CHANNEL(METAL)] | s[CHANNEL(REFLECTANCE) + c] | s[CHANNEL(ETA) + c] | s[CHANNEL(K) + c];
 
@@ -330,36 +353,21 @@ static int32_t evaluate(const struct mcr_host *host, struct mcr_context *context
         if (compensates(inputs)) {
             double *mean = room + LEANING * stride; /* no longer needed */
             mean_fresnel_lanes(varies ? at->n : 1, eta, k, mean);
-            again_lanes(at->n, surface.alpha, again, mean, varies, channel[c]);
+            again_lanes(at->n, surface.lost, again, mean, varies, channel[c]);
         }
     }
     return MCR_OK;
 }
 
-/* F's mean, as if all light met one facet: for feature layers. */
-static int32_t albedo(const struct mcr_host *host, struct mcr_context *context, const void *instance, const struct mcr_inputs *inputs,
-                      const struct mcr_points *at, const struct mcr_colours *out)
-{
-    double *room = host->scratch(host, context), *channel[3] = {out->r, out->g, out->b};
-    double *eta = room, *k = room + mcr_padded(at->n);
-
-    (void)instance;
-    for (uint32_t c = 0; c < 3; c++) {
-        index_lanes(at->n, inputs, c, eta, k);
-        mean_fresnel_lanes(at->n, eta, k, channel[c]);
-    }
-    return MCR_OK;
-}
-
-/* ---- Sampling ---- */
-
-/* The chance that a direction is drawn in proportion to the cosine: what is lost, where it is given back. */
-static void share_lanes(const struct mcr_points *at, const double *alpha, const double *asked, uint32_t stride, double *restrict share)
+/* What is lost, where it is given back: the chance that a direction is drawn in proportion to the cosine. */
+static void share_lanes(const struct mcr_points *at, const struct surface *s, const double *asked, uint32_t stride, double *restrict share)
 {
     const double *nx = at->nx, *ny = at->ny, *nz = at->nz, *ox = at->ox, *oy = at->oy, *oz = at->oz;
+    const double *tx = s->t[0], *ty = s->t[1], *tz = s->t[2], *ax = s->ax, *ay = s->ay, *alpha = s->alpha;
 
     for (uint32_t i = 0; i < at->n; i++) {
-        double lost = mcr_ggx_lost(alpha[i], nx[i] * ox[i] + ny[i] * oy[i] + nz[i] * oz[i]);
+        struct mcr_frame f = mcr_frame(mcr_vector(nx[i], ny[i], nz[i]), mcr_vector(tx[i], ty[i], tz[i]));
+        double lost = lost_lane(alpha[i], ax[i], ay[i], mcr_to_frame(f, mcr_vector(ox[i], oy[i], oz[i])));
         share[i] = asked[i * stride] != 0 ? lost : 0;
     }
 }
@@ -367,11 +375,85 @@ static void share_lanes(const struct mcr_points *at, const double *alpha, const 
 static const double *shares(const struct mcr_points *at, const struct mcr_inputs *inputs, const struct surface *s, double *room)
 {
     if (compensates(inputs))
-        share_lanes(at, s->alpha, inputs->channel[CHANNEL(COMPENSATION)], inputs->stride[CHANNEL(COMPENSATION)], room);
+        share_lanes(at, s, inputs->channel[CHANNEL(COMPENSATION)], inputs->stride[CHANNEL(COMPENSATION)], room);
     else
         mcr_fill_lanes(at->n, 0, room);
     return room;
 }
+
+/* ---- albedo ---- */
+
+/* The share of the light, without Fresnel's part, that is reflected at point k of the lattice over visible normals, and the cosine there. */
+static void normal_lanes(const struct mcr_points *at, const struct surface *s, int k, double *restrict shape, double *restrict cosine)
+{
+    const double *nx = at->nx, *ny = at->ny, *nz = at->nz, *ox = at->ox, *oy = at->oy, *oz = at->oz;
+    const double *tx = s->t[0], *ty = s->t[1], *tz = s->t[2], *ax = s->ax, *ay = s->ay;
+    double rest, turn, sine, cosine_turn, weight = mcr_ggx_lattice(k, &rest, &turn);
+
+    mcr_sincos_turns(turn, &sine, &cosine_turn);
+    for (uint32_t i = 0; i < at->n; i++) {
+        struct mcr_frame f = mcr_frame(mcr_vector(nx[i], ny[i], nz[i]), mcr_vector(tx[i], ty[i], tz[i]));
+        struct mcr_vector o = mcr_to_frame(f, mcr_vector(ox[i], oy[i], oz[i])), m, w;
+        int visible = o.z > MCR_GGX_HORIZON;
+        double length2, so, sw, c, g;
+
+        o.z = visible ? o.z : 1;
+        m = mcr_ggx_visible_at(ax[i], ay[i], o, rest, sine, cosine_turn);
+        length2 = mcr_dot(m, m);
+        w = mcr_mirrored(o, m, length2);
+        so = mcr_ggx_spread(ax[i], ay[i], o), sw = mcr_ggx_spread(ax[i], ay[i], w);
+        visible &= (w.z > MCR_GGX_HORIZON) & (length2 > 0);
+        g = w.z * (o.z + so) / (visible ? w.z * so + o.z * sw : 1); /* G2 / G1(o) */
+        c = mcr_dot(o, m) / sqrt(length2 > 0 ? length2 : 1);
+        shape[i] = visible ? weight * g : 0;
+        cosine[i] = c < 1 ? (c > 0 ? c : 0) : 1;
+    }
+}
+
+static void add_lanes(uint32_t n, const double *part, double *restrict sum)
+{
+    for (uint32_t i = 0; i < n; i++) {
+        double all = sum[i] + part[i];
+        sum[i] = all < 1 ? all : 1;
+    }
+}
+
+/* The directional albedo, where no reflection is below the geometric surface, to about 2e-3: for feature layers. */
+static int32_t albedo(const struct mcr_host *host, struct mcr_context *context, const void *instance, const struct mcr_inputs *inputs,
+                      const struct mcr_points *at, const struct mcr_colours *out)
+{
+    double *room = host->scratch(host, context), *channel[3] = {out->r, out->g, out->b};
+    const uint64_t stride = mcr_padded(at->n);
+    double *shape = room + SHAPE * stride, *cosine = room + COSINE * stride, *eta = room + ETA_LANES * stride, *k = room + K_LANES * stride;
+    double *again = room + AGAIN * stride, *part = room + PART * stride;
+    const uint32_t *in = inputs->stride;
+    struct surface s;
+
+    (void)instance;
+    surface_lanes(at, inputs, room, &s);
+    if (compensates(inputs))
+        share_lanes(at, &s, inputs->channel[CHANNEL(COMPENSATION)], in[CHANNEL(COMPENSATION)], again);
+    for (uint32_t c = 0; c < 3; c++) {
+        uint32_t varies = in[CHANNEL(METAL)] | in[CHANNEL(REFLECTANCE) + c] | in[CHANNEL(ETA) + c] | in[CHANNEL(K) + c];
+
+        index_lanes(varies ? at->n : 1, inputs, c, eta, k);
+        mcr_fill_lanes(at->n, 0, channel[c]);
+        for (int j = 0; j < MCR_GGX_NORMALS; j++) {
+            normal_lanes(at, &s, j, shape, cosine);
+            fresnel_lanes(at->n, shape, cosine, eta, k, varies, part);
+            add_lanes(at->n, part, channel[c]);
+        }
+        if (compensates(inputs)) {
+            mean_fresnel_lanes(varies ? at->n : 1, eta, k, shape);
+            mcr_fill_lanes(at->n, 0, part);
+            again_lanes(at->n, s.lost, again, shape, varies, part);
+            add_lanes(at->n, part, channel[c]);
+        }
+    }
+    return MCR_OK;
+}
+
+/* ---- Sampling ---- */
 
 static void density_lanes(const struct mcr_points *at, const struct surface *s, const double *share, const double *restrict x,
                           const double *restrict y, const double *restrict z, double *restrict density)

@@ -285,11 +285,13 @@ MCR_INLINE double mcr_within_unit_(double x)
     return positive < 1 ? positive : 1;
 }
 
-/* The share of light that meets more than one facet and is lost, seen at the cosine c: 1 - E. */
-MCR_INLINE double mcr_ggx_lost(double alpha, double c)
+/*
+ * The share of light that meets more than one facet and is lost, 1 - E, by the cosine t to the normal of the surface that is stretched until its slopes
+ * are those of a hemisphere: cos / mcr_ggx_spread.
+ */
+MCR_INLINE double mcr_ggx_lost_stretched(double alpha, double t)
 {
-    double cosine = mcr_within_unit_(c), sine2 = (1 - cosine) * (1 + cosine), spread = sqrt(cosine * cosine + alpha * alpha * sine2);
-    double x = 2 * sqrt(cosine / spread) - 1, y = 2 * alpha - 1, p = mcr_row12_(mcr_ggx_lost_[17], y);
+    double x = 2 * sqrt(mcr_within_unit_(t)) - 1, y = 2 * alpha - 1, p = mcr_row12_(mcr_ggx_lost_[17], y);
 
     p = p * x + mcr_row12_(mcr_ggx_lost_[16], y);
     p = p * x + mcr_row12_(mcr_ggx_lost_[15], y);
@@ -309,6 +311,13 @@ MCR_INLINE double mcr_ggx_lost(double alpha, double c)
     p = p * x + mcr_row12_(mcr_ggx_lost_[1], y);
     p = p * x + mcr_row12_(mcr_ggx_lost_[0], y);
     return mcr_within_unit_(p);
+}
+
+/* The same by the cosine c. */
+MCR_INLINE double mcr_ggx_lost(double alpha, double c)
+{
+    double cosine = mcr_within_unit_(c), sine2 = (1 - cosine) * (1 + cosine), spread = sqrt(cosine * cosine + alpha * alpha * sine2);
+    return mcr_ggx_lost_stretched(alpha, cosine / spread);
 }
 
 /* The mean of (1 - o.h)^5 over the light that is not lost: E with Schlick's formula is (1 - lost) (r + (1 - r) grazing). */
@@ -375,6 +384,84 @@ MCR_INLINE double mcr_ggx_mean_grazing(double alpha)
     p = p * x - 0.03463173809;
     p = p * x + 0.01867760538;
     return p;
+}
+
+/* ---- anisotropic GGX ---- */
+
+/*
+ * By the stretched cosine, what anisotropic facets lose is close to what isotropic ones of one width between ax and ay lose from all azimuths. The width
+ * below is the largest of which that is nowhere more than 1e-3 above what is lost, so that whoever gives it back creates no light: of the light that is
+ * lost, up to 0.07 are left out where the widths differ most. width = larger (1 - (1 - r) p(larger, r)), r being the smaller width over the larger, and
+ * its mean over the hemisphere is mcr_ggx_mean_lost(width) (1 + (1 - r) q(larger, r)). p and q are polynomials in 2 sqrt(larger) - 1 and 2 r - 1, fitted
+ * one-sidedly, by linear programs, to midpoint sums over 100 x 80 visible normals at 61 directions for 11 x 10 pairs of widths.
+ */
+static const double mcr_ggx_narrow_[7][4] = {
+    {0.6191291909, 0.1696824841, -0.0625773971, -0.02788196266},
+    {-0.1102148331, 0.0386105834, 0.08936273498, 0.02973437029},
+    {-0.2757714953, -0.3177535388, 0.01401452719, 0.09208818986},
+    {0.7997112516, 0.3070737184, 0.3117831435, 0.2501327201},
+    {-0.4631119763, 0.3706735238, -0.4983794905, -0.5992098232},
+    {-0.4370436795, -0.2878693845, -0.431080126, -0.2905938448},
+    {0.3893015417, -0.09689589112, 0.6048979938, 0.5613461551},
+};
+static const double mcr_ggx_narrow_mean_[9][4] = {
+    {0.09379605254, 0.04408121834, -0.02261908002, -0.005539908433},
+    {-0.3628568113, 0.1438582565, 0.169733821, -0.0444841495},
+    {0.1730063742, -0.6315749894, -0.1743539969, 0.189847205},
+    {0.8656545109, -1.150553089, -0.6480806804, 0.5652407404},
+    {-1.710765793, 2.894283165, 0.6454162192, -1.438256644},
+    {1.207415209, 3.165440574, 2.335172212, -0.4456625142},
+    {0.4913586292, -5.854492052, -2.306079845, 1.879921938},
+    {-1.468591888, -2.271966802, -2.061665754, 0.01726200868},
+    {0.704629659, 3.658724095, 2.107035813, -0.6823228968},
+};
+
+MCR_INLINE double mcr_cubic_(const double *c, double y) { return ((c[3] * y + c[2]) * y + c[1]) * y + c[0]; }
+
+MCR_INLINE double mcr_ggx_width(double ax, double ay)
+{
+    double larger = ax > ay ? ax : ay, r = (ax < ay ? ax : ay) / larger, w = 2 * sqrt(larger) - 1, y = 2 * r - 1, p = mcr_cubic_(mcr_ggx_narrow_[6], y);
+
+    for (int i = 5; i >= 0; i--)
+        p = p * w + mcr_cubic_(mcr_ggx_narrow_[i], y);
+    return larger * (1 - (1 - r) * mcr_within_unit_(p));
+}
+
+/* The mean of mcr_ggx_lost_stretched for mcr_ggx_width over the hemisphere, weighted by the cosine, or a little more. */
+MCR_INLINE double mcr_ggx_width_mean_lost(double ax, double ay)
+{
+    double larger = ax > ay ? ax : ay, r = (ax < ay ? ax : ay) / larger, w = 2 * sqrt(larger) - 1, y = 2 * r - 1;
+    double q = mcr_cubic_(mcr_ggx_narrow_mean_[8], y);
+
+    for (int i = 7; i >= 0; i--)
+        q = q * w + mcr_cubic_(mcr_ggx_narrow_mean_[i], y);
+    return mcr_ggx_mean_lost(mcr_ggx_width(ax, ay)) * (1 + (1 - r) * q);
+}
+
+/* ---- integrals over visible normals ---- */
+
+/*
+ * Point k < MCR_GGX_NORMALS of a lattice over the cap of mcr_ggx_visible, as its height `rest` and its place (x, y) in the unit disk's rim, with a weight;
+ * the weights sum to 1. More points are where little of the cap's height is left, which are the steep normals. Mean shares of light are within 2e-3.
+ */
+#define MCR_GGX_NORMALS 144
+MCR_INLINE double mcr_ggx_lattice(int k, double *rest, double *turn)
+{
+    double t = (k + 0.5) * (1.0 / MCR_GGX_NORMALS), v = (k * 89 % MCR_GGX_NORMALS + 0.5) * (1.0 / MCR_GGX_NORMALS); /* 89 and 144: Fibonacci's */
+
+    *rest = t * t;
+    *turn = v;
+    return 2 * t * (1.0 / MCR_GGX_NORMALS);
+}
+
+/* The normal that o sees at that point; (sine, cosine) of the azimuth. Not unit. */
+MCR_INLINE struct mcr_vector mcr_ggx_visible_at(double ax, double ay, struct mcr_vector o, double rest, double sine, double cosine)
+{
+    double qx = ax * o.x, qy = ay * o.y, length = 1 / sqrt(qx * qx + qy * qy + o.z * o.z);
+    double sx = qx * length, sy = qy * length, sz = o.z * length < 1 ? o.z * length : 1, p = 1 + sz;
+    double radius = sqrt(1 - rest) * sqrt(p * (2 - (1 - rest) * p));
+
+    return mcr_vector(ax * (radius * cosine + sx), ay * (radius * sine + sy), p * rest);
 }
 
 #ifdef __cplusplus
