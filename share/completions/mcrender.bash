@@ -35,17 +35,11 @@ _mcrender()
     --bits) mapfile -t COMPREPLY < <(compgen -W '8 16' -- "$word"); return ;;
     --sampler) mapfile -t COMPREPLY < <(compgen -W "$(_mcrender_words "$program")" -- "$word"); return ;;
     --plugin) mapfile -t COMPREPLY < <(compgen -f -X '!*.so' -- "$word"; compgen -d -- "$word"); return ;;
-<<<<<<< HEAD
-    -o | --report) mapfile -t COMPREPLY < <(compgen -f -- "$word"); return ;;
+    -o | --report | --sample-map | --use-map) mapfile -t COMPREPLY < <(compgen -f -- "$word"); return ;;
     --tone) mapfile -t COMPREPLY < <(compgen -W 'linear reinhard hable aces' -- "$word"); return ;;
     --layers) mapfile -t COMPREPLY < <(compgen -W 'variance albedo normal depth id direct indirect' -- "$word"); return ;;
     --roulette) mapfile -t COMPREPLY < <(compgen -W 'on off' -- "$word"); return ;;
-    --spp | --depth | --seed | --threads | --size | --crop | --batch | --set | --exposure) return ;;
-=======
-    -o | --report | --sample-map | --use-map) mapfile -t COMPREPLY < <(compgen -f -- "$word"); return ;;
-    --roulette) mapfile -t COMPREPLY < <(compgen -W 'on off' -- "$word"); return ;;
-    --spp | --depth | --seed | --threads | --size | --crop | --batch | --time | --target-error | --round | --set | --exposure | --tone) return ;;
->>>>>>> eea8026 (Samples where they are needed: time, target_error and adaptive, with sample maps that give the same bits again)
+    --spp | --depth | --seed | --threads | --size | --crop | --batch | --time | --target-error | --round | --set | --exposure) return ;;
     esac
     if [ "$command" = compare ]; then
         _mcrender_compare "$program" "$word" "$before"
