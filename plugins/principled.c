@@ -10,13 +10,14 @@
  * ((ior - 1) / (ior + 1))^2) on up to `specular`, over base_color / pi (1 - E(o)) (1 - E(w)) / (1 - <E>), E being the directional albedo of the former in
  * its brightest colour and < > a mean weighted by the cosine: white loses nothing. glass is an interface with Fresnel's formulas, whose reflection `specular`
  * and `specular_color` scale, but where all is reflected; base_color tints what it passes. A thin wall has two interfaces; with F of one, all internal
- * reflections together reflect 2 F / (1 + F). Light that meets several facets of glass is lost, as with `dielectric`.
+ * reflections together reflect 2 F / (1 + F). Light that meets several facets of glass is lost, as with `dielectric`: of clear glass of index 1.5 seen at 60
+ * degrees 0.7 % at roughness 0.3, 26 % at 1.
  *
  * coat is clearcoat times GGX of F = 0.04 + 0.96 (1 - cos)^5, without a colour. sheen is sheen_color times the distribution of Estevez and Kulla,
  * "Production friendly microfacet sheen BRDF" (2017), with the visibility of Ashikhmin and Premoze, "Distribution-based BRDFs" (2007), 1 / (4 (cos_o + cos_w
  * - cos_o cos_w)); of low roughness it would reflect more than what arrives at grazing angles, and is divided by the larger of E(o), E(w) and 1.
  * What is below a layer of directional albedo E is scaled by min(1 - E(o), 1 - E(w)), as the extension for sheen has it: f is reciprocal, and no light is
- * made, but a white base under a layer loses some: at most the mean of max(0, E(w) - E(o)), 5 % under a full coat seen from above.
+ * made, but a white base under a layer loses some: at most the mean of max(0, E(w) - E(o)), from above 5 % under a full coat, 11 % under white sheen.
  *
  * The layers are on both sides, as are metal and plastic. Smooth lobes (roughness 0 everywhere) are found by `delta`. A texture of roughness that is not 0
  * everywhere makes lobes, of 1e-7 rad where it is 0.
@@ -893,7 +894,7 @@ MCR_LOOP void unit_lanes(uint32_t n, const double *restrict ratio, const double 
 {
     for (uint32_t i = 0; i < n; i++) {
         double scaled = 1 / (ratio[i] * ratio[i]);
-        value[i] = !thin & (crossed[i] != 0) ? scaled : 1;
+        value[i] = (thin | (crossed[i] == 0)) ? 1 : scaled;
     }
 }
 

@@ -37,7 +37,29 @@ for cosine in 0.9 0.3; do # the polynomials of directional albedos err by less t
     known "conductor with compensation in the white furnace, cosine $cosine" "$TMPDIR/scene.scn" 1 'cosine;bsdf'
     seen 'glossy { albedo 1   roughness 0.4 }' $cosine
     known "glossy in the white furnace, cosine $cosine" "$TMPDIR/scene.scn" 1 'cosine;bsdf'
+    seen "principled { base_color 1   metallic 1   roughness 0.7 }" $cosine
+    known "principled metal in the white furnace, cosine $cosine" "$TMPDIR/scene.scn" 1 'cosine;bsdf'
+    seen "principled { base_color 1   roughness 0.6 }" $cosine
+    known "principled plastic in the white furnace, cosine $cosine" "$TMPDIR/scene.scn" 1 'cosine;bsdf'
 done
+
+# The limits of principled: S21 without compensation, the diffuse base alone, smooth glass (all light passes or is reflected) and what is left of the light
+# that crosses a wall of index 1 along its normal, twice its attenuation_distance thick.
+seen 'principled { base_color 1   metallic 1   roughness 0.5   compensation none }' 0.5
+known 'principled metal without compensation is S21' "$TMPDIR/scene.scn" .857263435582 'cosine;bsdf'
+seen 'principled { base_color 0.6   specular 0 }' 0.3
+known 'principled without specular scatters base_color' "$TMPDIR/scene.scn" 0.6 'cosine;bsdf'
+seen 'principled { roughness 0   transmission 1   thin yes }' 0.5
+known 'principled glass in the white furnace' "$TMPDIR/scene.scn" 1 bsdf
+cat >"$TMPDIR/slab.scn" <<TEXT
+mcrender 1
+camera perspective { from (0, 0, 5)   to (0, 0, 0)   up (0, 1, 0)   fov 1e-9 }
+film { size (16, 16) }
+render { roulette off   depth 4   background 1 }
+material glass principled { roughness 0   ior 1   specular 0   transmission 1   attenuation_color 0.5   attenuation_distance 0.5 }
+box { min (-9, -9, 0)   max (9, 9, 1)   material glass }
+TEXT
+known 'principled: Beer and Lambert, 0.5^2' "$TMPDIR/slab.scn" 0.25 bsdf
 
 # A white rough ball in a white furnace cannot be seen.
 cat >"$TMPDIR/furnace.scn" <<TEXT

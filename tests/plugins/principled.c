@@ -135,7 +135,7 @@ static void test_furnace(void)
             struct estimate e;
 
             sheet_view(&sheet, normal, mu[m], 0.7);
-            e = scattered(&sheet, 1, 16, 100 + 4 * k + m);
+            e = scattered(&sheet, 1, 8, 100 + 4 * k + m);
             if (fabs(e.mean - 1) > 1.5e-3 + 4 * e.error)
                 printf("# metallic %g, ior %g, roughness %g, cos %g: %.5f +- %.5f\n", a.metallic, a.ior, a.roughness, mu[m], e.mean, e.error), off++;
             worst = fmax(worst, fabs(e.mean - 1)), sharp = fmax(sharp, e.error), bad += e.bad;
@@ -150,8 +150,8 @@ static void test_losses(void)
 {
     static const struct {
         double coat, coat_roughness, sheen, transmission, roughness, mu, least;
-    } cases[] = {{1, 0, 0, 0, 0.5, 1, 0.94}, {1, 0.5, 0, 0, 0.5, 0.3, 0.94}, {0, 0, 1, 0, 0.5, 1, 0.7}, {0, 0, 1, 0, 0.5, 0.2, 0.7},
-                 {0, 0, 0, 1, 0, 0.5, 0.9999}, {0, 0, 0, 1, 0.3, 0.5, 0.99}, {0, 0, 0, 1, 1, 0.5, 0.6}};
+    } cases[] = {{1, 0, 0, 0, 0.5, 1, 0.95}, {1, 0.5, 0, 0, 0.5, 0.3, 0.99}, {0, 0, 1, 0, 0.5, 1, 0.88}, {0, 0, 1, 0, 0.5, 0.2, 0.97},
+                 {0, 0, 0, 1, 0, 0.5, 0.9999}, {0, 0, 0, 1, 0.3, 0.5, 0.99}, {0, 0, 0, 1, 1, 0.5, 0.73}};
 
     for (uint32_t k = 0; k < LENGTH(cases); k++) {
         struct looks a = plain;
@@ -162,7 +162,7 @@ static void test_losses(void)
         a.roughness = cases[k].roughness;
         make(&sheet, &a, 1);
         sheet_view(&sheet, normal, cases[k].mu, 0.7);
-        e = scattered(&sheet, scale_of(&a, 1), 32, 600 + 3 * k);
+        e = scattered(&sheet, scale_of(&a, 1), 16, 600 + 3 * k);
         ok(e.bad == 0 && e.mean <= 1 + 1e-3 + 4 * e.error && e.mean >= cases[k].least - 4 * e.error && e.error < 8e-3,
            "%u: white, coat %g, sheen %g, transmission %g, roughness %g, cos %g: %.4f +- %.4f", isa, a.coat, a.sheen, a.transmission, a.roughness,
            cases[k].mu, e.mean, e.error);
@@ -177,7 +177,7 @@ static void test_random(void)
     uint32_t much = 0, bad = 0, differ = 0, one_way = 0, compared = 0;
     double most = 0, reciprocity = 0, sharp = 0;
 
-    for (uint32_t k = 0; k < 60; k++) {
+    for (uint32_t k = 0; k < 40; k++) {
         struct looks a = random_looks(k);
         double side = k % 4 ? 1 : -1, mass;
         struct sheet sheet;
@@ -187,7 +187,7 @@ static void test_random(void)
             struct estimate e;
 
             sheet_view(&sheet, normal, mu[m], 0.7);
-            e = scattered(&sheet, scale_of(&a, side), 6, 700 + 6 * k + m);
+            e = scattered(&sheet, scale_of(&a, side), 4, 700 + 6 * k + m);
             much += e.mean > 1 + 2e-3 + 4 * e.error, bad += e.bad;
             most = fmax(most, e.mean), sharp = fmax(sharp, e.error);
             if (e.mean > 1 + 2e-3 + 4 * e.error)
@@ -217,7 +217,7 @@ static void test_random(void)
         unmake(&sheet);
     }
     ok(much == 0 && bad == 0 && sharp < 0.05, "%u: no settings make light (largest %.4f, standard errors up to %.1e)", isa, most, sharp);
-    ok(differ == 0 && compared >= 10, "%u: draws find what the quadrature finds, %u settings", isa, compared);
+    ok(differ == 0 && compared >= 6, "%u: draws find what the quadrature finds, %u settings", isa, compared);
     ok(one_way == 0, "%u: what is reflected goes both ways (%.1e)", isa, reciprocity);
 }
 
@@ -228,17 +228,17 @@ static void test_draw(void)
         {{0.8, 0.9, 0.5}, 0, 0.7, 1.5, 1, 1, 0, 0, 0, 0.3, 1, 0, 0},       {{0.8, 0.9, 0.5}, 0.2, 0.8, 1.3, 0.7, 2, 0.5, 0.7, 0.3, 0.4, 0.6, 0, 0},
         {{0.8, 0.9, 0.5}, 0.2, 0.7, 1.5, 1, 1, 0.5, 0, 0, 0.3, 0.6, 1, 0}, {{0.5, 0.5, 0.5}, 0, 0, 1.5, 1, 1, 1, 0.6, 0.5, 0.3, 0.3, 0, 0},
     };
-    static const double mu[] = {0.9, 0.3};
+    static const double mu[] = {0.9, 0.3, 0.6};
 
-    for (uint32_t k = 0; k < LENGTH(cases) * LENGTH(mu); k++) {
-        struct looks a = cases[k / 2];
+    for (uint32_t k = 0; k < LENGTH(cases); k++) {
+        struct looks a = cases[k];
         struct sheet sheet;
         double mass, z;
 
-        make(&sheet, &a, k % 4 == 1 ? -1 : 1);
-        sheet_view(&sheet, normal, mu[k % 2], 0.7);
+        make(&sheet, &a, k == 3 ? -1 : 1);
+        sheet_view(&sheet, normal, mu[k % 3], 0.7);
         z = chi_square_over(&sheet, normal, 48, 200 + k, -1, &mass);
-        ok(z <= 4 && mass <= 1.001 && mass > 0.5, "%u: draws follow the density, case %u, cos %g: chi-square z %.2f, mass %.4f", isa, k / 2, mu[k % 2], z, mass);
+        ok(z <= 4 && mass <= 1.001 && mass > 0.5, "%u: draws follow the density, case %u, cos %g: chi-square z %.2f, mass %.4f", isa, k, mu[k % 3], z, mass);
         unmake(&sheet);
     }
 }
@@ -434,7 +434,7 @@ static uint64_t test_extremes(void)
     uint32_t bad = 0;
     uint64_t bits = 0;
 
-    for (uint32_t k = 0; k < 40; k++) {
+    for (uint32_t k = 0; k < 20; k++) {
         struct looks a = random_looks(1000 + k);
         struct sheet sheet;
 
@@ -480,19 +480,19 @@ int main(void)
     const struct mcr_plugin *file = load("principled");
     uint64_t first = 0, bits;
 
+    for (isa = MCR_ISA_AVX512; !(plugin = descriptor_of(file, isa)); isa--) /* the fastest; the others have its bits */
+        ;
+    test_furnace();
+    test_losses();
+    test_random();
+    test_draw();
     for (isa = MCR_ISA_BASELINE; isa <= MCR_ISA_AVX512; isa++) {
         plugin = descriptor_of(file, isa);
         if (!plugin) {
             tap_skip("an instruction set", "this processor or build lacks it");
             continue;
         }
-        if (isa == MCR_ISA_BASELINE) { /* the others have its bits */
-            test_furnace();
-            test_losses();
-            test_random();
-            test_draw();
-            test_mistakes();
-        }
+        test_mistakes();
         test_limits();
         test_smooth();
         test_traits();
