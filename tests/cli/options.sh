@@ -232,7 +232,7 @@ run check --spp 3 --sampler uniform --set glow=2 --size 4x4 glow.scn
 ends "check with replaced settings" 0
 run plugins
 ends "plugins" 0
-for word in uniform cosine light mixture bsdf nee stratified sobol halton bluenoise antithetic independent lambert oren-nayar mirror dielectric glossy principled conductor emitter mix mask; do
+for word in uniform cosine light mixture bsdf nee stratified sobol halton bluenoise antithetic independent lambert oren-nayar mirror dielectric glossy principled conductor emitter mix mask control; do
     check "plugins lists $word" grep -qw "$word" "$TMPDIR/stdout"
 done
 run plugins light

@@ -26,7 +26,7 @@ picture()
 equal_scene()
 {
     local scene=$1 spp=$2 depth=$3 sampler seed=2
-    local samplers=(nee 'mixture(bsdf 1, light 1)' 'sobol(nee)' 'stratified(mixture(bsdf 1, light 1))')
+    local samplers=(nee control 'mixture(bsdf 1, light 1)' 'sobol(nee)' 'stratified(mixture(bsdf 1, light 1))')
     shift 3
     case $with in
     bsdf) samplers=(bsdf) ;;
