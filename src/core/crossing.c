@@ -134,7 +134,7 @@ static int64_t counts(const struct mcr_core *core, const uint32_t inside[MCR_INT
     return best;
 }
 
-/* What counts on the far side of a surface of this material, were it crossed; and without the material itself. */
+/* The same without the material itself. */
 static int64_t counts_without(const struct mcr_core *core, const uint32_t inside[MCR_INTERIORS], uint32_t material)
 {
     uint32_t rest[MCR_INTERIORS];

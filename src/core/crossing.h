@@ -40,7 +40,7 @@ struct mcr_look {
     double *r, *g, *b;      /* by lane: weighted by what the way lets through. Left alone where nothing does and the ray is not seen */
 };
 
-/* Whether light comes through, up to `far`; and the first hit. Both count nothing. Return 0 or a plugin's failure. */
+/* Whether light comes through, up to `far`; and the first hit. The caller counts the rays. Return 0 or a plugin's failure. */
 int32_t mcr_look_visible(struct mcr_batch *batch, const struct mcr_look *look);
 int32_t mcr_look_closest(struct mcr_batch *batch, const struct mcr_look *look);
 
