@@ -84,6 +84,7 @@ static void estimate_memory(struct mcr_explain_data *data, uint32_t features)
     const int correlated = scene->sampler->correlated;
     uint64_t layers = pixels * mcr_features_bytes(features);
     uint64_t plain = mcr_film_bytes(pixels, correlated, 0, planned, render->replicates);
+    plain += mcr_render_in_rounds(render) ? mcr_film_pixel_bytes(pixels, correlated) : 0;
     data->variance_bytes = data->options->variance_layer ? mcr_film_bytes(pixels, correlated, 1, planned, render->replicates) - plain : 0;
     /* the cells of a pass are among the features' bytes a pixel */
     data->film_bytes = plain + data->variance_bytes + (features ? layers - pixels * sizeof(struct mcr_cell_features) : 0);

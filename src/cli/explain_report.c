@@ -209,7 +209,8 @@ static void text_time(FILE *to, const struct mcr_explain_data *data)
     fprintf(to, "time      %.0f ns a sample on one thread, %.2f rays (measured now: %llu samples of %ux%u pixels); about ", per_sample(data, all),
             (double)rays_of(&data->pilot) / samples, (unsigned long long)data->pilot.samples, data->pilot_width, data->pilot_height);
     text_duration(to, render_seconds(data));
-    fprintf(to, " for %.4g samples on %u thread%s\n", render_samples(data), data->threads, data->threads > 1 ? "s" : "");
+    fprintf(to, " for %.4g samples on %u thread%s%s\n", render_samples(data), data->threads, data->threads > 1 ? "s" : "",
+            mcr_render_in_rounds(&data->loaded->scene->render) ? ", but rounds end by their rules" : "");
     for (uint32_t i = 0; i < MCR_STAGE_COUNT; i++)
         if (data->pilot.stage_seconds[i] > 0)
             fprintf(to, "          %-12s %9.1f ns %5.1f %%\n", mcr_stage_name[i], per_sample(data, data->pilot.stage_seconds[i]),

@@ -132,6 +132,25 @@ static void compat_without(struct subject *s)
     s->scene.render.compat = 0;
 }
 
+static int rounds_why(struct subject *s, struct clause *c)
+{
+    const struct mcr_render_settings *r = &s->scene.render;
+    const char *between = "";
+    if (!mcr_render_in_rounds(r))
+        say(c, "every pixel has spp samples");
+    if (r->time > 0)
+        say(c, "time %g s", r->time);
+    between = c->used ? ", " : "";
+    if (r->target_error > 0)
+        say(c, "%starget_error %g", between, r->target_error);
+    between = c->used ? ", " : "";
+    if (r->adaptive && !r->mapped)
+        say(c, "%sadaptive", between);
+    if (r->mapped)
+        say(c, "%sa sample map", between);
+    return mcr_render_in_rounds(r);
+}
+
 static int lens_why(struct subject *s, struct clause *c)
 {
     int lens = s->scene.camera.kind == MCR_CAMERA_THIN_LENS && s->scene.camera.lens_radius > 0;
@@ -163,7 +182,7 @@ static int smooth_why(struct subject *s, struct clause *c)
     for (uint32_t t = 0; t < s->scene.triangles.count && s->scene.triangles.normal; t++)
         count += s->scene.triangles.normal[t][0] != UINT32_MAX;
     if (s->core.surfaces.smooth)
-        say(c, "%u triangles have normals of their own", count);
+        say(c, count == 1 ? "%u triangle has normals of its own" : "%u triangles have normals of their own", count);
     else
         say(c, "no triangle has normals of its own");
     return s->core.surfaces.smooth;
@@ -428,6 +447,7 @@ static const struct feature {
     {"feature layers", STAGE(LAYERS), layers_why, layers_without},
     {"filter weights", 0, weights_why, weights_without},
     {"compat", 0, compat_why, compat_without},
+    {"rounds", 0, rounds_why, NULL},
     {"lens", 0, lens_why, NULL},
     {"normal maps", STAGE(NORMALS), normals_why, normals_without},
     {"smooth normals", 0, smooth_why, smooth_without},
@@ -567,6 +587,8 @@ static void tell_lights(const struct mcr_core *core, struct mcr_explained_lights
 static uint64_t pass_cells(const struct mcr_scene *scene)
 {
     uint64_t pixels = (uint64_t)(scene->film.x1 - scene->film.x0) * (scene->film.y1 - scene->film.y0);
+    if (mcr_render_in_rounds(&scene->render))
+        return MCR_TASK_CELLS;
     uint64_t of_pixel = (scene->render.spp / scene->render.replicates + MCR_CELL_SAMPLES - 1) / MCR_CELL_SAMPLES;
     uint64_t at_once = pixels < MCR_TASK_CELLS ? MCR_TASK_CELLS / pixels : 1;
     return pixels * (of_pixel < at_once ? of_pixel : at_once);

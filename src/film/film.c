@@ -40,6 +40,11 @@ uint64_t mcr_film_bytes(uint64_t pixels, int correlated, int channels, uint32_t 
     return pixels * numbers * sizeof(double);
 }
 
+uint64_t mcr_film_pixel_bytes(uint64_t pixels, int correlated)
+{
+    return pixels * (sizeof(uint32_t) + (correlated ? 3 : 2) * sizeof(double));
+}
+
 /* Independent samples need moments in the levels, as they come; replicates have means, and these their moments. */
 int mcr_film_keep_channels(struct mcr_film *film)
 {

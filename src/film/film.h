@@ -59,6 +59,8 @@ struct mcr_film *mcr_film_create(uint32_t width, uint32_t height, int correlated
 void mcr_film_destroy(struct mcr_film *film);
 /* Bytes that such a film takes for `replicates` replicates of `planned` samples at most, with the channels' variance or without. */
 uint64_t mcr_film_bytes(uint64_t pixels, int correlated, int channels, uint32_t planned, uint32_t replicates);
+/* What mcr_film_by_pixel takes besides. */
+uint64_t mcr_film_pixel_bytes(uint64_t pixels, int correlated);
 /* Asks for mcr_film_channel_variance; before the first cell. Returns 0, or -1 when memory is short. */
 int mcr_film_keep_channels(struct mcr_film *film);
 /* The film as a taker of cells, asking for what it keeps. */
