@@ -42,7 +42,8 @@ static uint32_t at_least_one(double number)
 /* The same view, with few pixels; the crop's edges go to the nearest ones. */
 static void shrink(struct mcr_film_settings *film, uint32_t planned)
 {
-    double wanted = fmin(fmax(PILOT_PIXELS, PILOT_SAMPLES / planned), PILOT_PIXELS_MOST), by = sqrt(wanted / ((double)(film->x1 - film->x0) * (film->y1 - film->y0)));
+    double wanted = fmin(fmax(PILOT_PIXELS, PILOT_SAMPLES / planned), PILOT_PIXELS_MOST);
+    double by = sqrt(wanted / ((double)(film->x1 - film->x0) * (film->y1 - film->y0)));
     if (by >= 1)
         return;
     film->width = at_least_one(film->width * by + 0.5);

@@ -129,7 +129,9 @@ static const char *choice_told(const struct mcr_explained_lights *lights)
 {
     if (!lights->aimed)
         return "found by chance: the sampler does not aim at them";
-    return lights->tree ? "chosen by a tree, by power, distance and orientation" : lights->emitters == 1 ? "always chosen" : "chosen by power among those that face the point";
+    if (lights->tree)
+        return "chosen by a tree, by power, distance and orientation";
+    return lights->emitters == 1 ? "always chosen" : "chosen by power among those that face the point";
 }
 
 static void text_lights(FILE *to, const struct mcr_explain_data *data)
@@ -149,8 +151,8 @@ static void text_lights(FILE *to, const struct mcr_explain_data *data)
         lead = "         ";
     }
     if (l->points + l->spots + l->suns) {
-        fprintf(to, "%s %u points, %u spots, %u suns without extent, one of them looked for at each scattering event%s\n", lead, l->points, l->spots, l->suns,
-                l->points_tree ? ", through a tree" : "");
+        fprintf(to, "%s %u points, %u spots, %u suns without extent, one of them looked for at each scattering event%s\n", lead, l->points,
+                l->spots, l->suns, l->points_tree ? ", through a tree" : "");
         lead = "         ";
     }
     if (lead[0] != ' ')
@@ -206,8 +208,8 @@ static void text_duration(FILE *to, double seconds)
 static void text_time(FILE *to, const struct mcr_explain_data *data)
 {
     const double all = all_seconds(data), samples = (double)data->pilot.samples;
-    fprintf(to, "time      %.0f ns a sample on one thread, %.2f rays (measured now: %llu samples of %ux%u pixels); about ", per_sample(data, all),
-            (double)rays_of(&data->pilot) / samples, (unsigned long long)data->pilot.samples, data->pilot_width, data->pilot_height);
+    fprintf(to, "time      %.0f ns a sample on one thread, %.2f rays (measured now: %llu samples of %ux%u pixels); about ",
+            per_sample(data, all), (double)rays_of(&data->pilot) / samples, (unsigned long long)data->pilot.samples, data->pilot_width, data->pilot_height);
     text_duration(to, render_seconds(data));
     fprintf(to, " for %.4g samples on %u thread%s%s\n", render_samples(data), data->threads, data->threads > 1 ? "s" : "",
             mcr_render_in_rounds(&data->loaded->scene->render) ? ", but rounds end by their rules" : "");
@@ -215,7 +217,8 @@ static void text_time(FILE *to, const struct mcr_explain_data *data)
         if (data->pilot.stage_seconds[i] > 0)
             fprintf(to, "          %-12s %9.1f ns %5.1f %%\n", mcr_stage_name[i], per_sample(data, data->pilot.stage_seconds[i]),
                     100 * data->pilot.stage_seconds[i] / all);
-    fprintf(to, "          %-12s %9.1f ns %5.1f %%\n", "(between)", per_sample(data, all - stage_seconds(data, ~0u)), 100 * (1 - stage_seconds(data, ~0u) / all));
+    double between = all - stage_seconds(data, ~0u);
+    fprintf(to, "          %-12s %9.1f ns %5.1f %%\n", "(between)", per_sample(data, between), 100 * between / all);
 }
 
 static void text_memory(FILE *to, const struct mcr_explain_data *data)

@@ -158,8 +158,8 @@ static int run_all(struct render *render, const struct mcr_scene *scene, const s
 }
 
 /*
- * As much of the first replicate as its time allows: one sample of each pixel, by which the rest is judged and which does not count then, and more and
- * more of them. The passes are those of a render, so that their times are.
+ * As much of the first replicate as its time allows: one sample of each pixel, by which the rest is judged and which does not count then, and more
+ * and more of them. The passes are those of a render, so that their times are.
  */
 static int run_pilot(struct render *render, const struct mcr_cell_sink *sink, struct mcr_render_stats *stats)
 {
@@ -182,7 +182,7 @@ static int run_pilot(struct render *render, const struct mcr_cell_sink *sink, st
         done += (uint32_t)(blocks * cell_samples);
         double now = mcr_cpu_seconds(), of_one = (now - start) / done;
         stats->pass_seconds += now - before;
-        double room = fmin((render->core.options->pilot - (now - start)) / of_one, planned - done); /* NaN, where the clock is coarse: planned - done */
+        double room = fmin((render->core.options->pilot - (now - start)) / of_one, planned - done); /* a coarse clock: planned - done */
         uint32_t more = room >= 1 ? (uint32_t)room : 0;
         cell_samples = more < MCR_CELL_SAMPLES ? more : MCR_CELL_SAMPLES;
         blocks = cell_samples ? more / cell_samples : 0;

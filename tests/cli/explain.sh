@@ -58,33 +58,34 @@ needs()
     equal "$1: the bytes of tables add up" "$(sums table_bytes tables_base)" "$(value tables e.json)"
 }
 sums() { awk -v key="\"$1\":" -v base="\"$2\":" '$1 == key || $1 == base { sub(/,$/, "", $2); sum += $2 } END { printf "%.0f\n", sum }' e.json; }
-adds() { check "$1 adds bytes to a batch" test "$(of_feature "$1" batch_bytes)" -gt 0; }
+# adds FEATURE BYTES: for each path at least so many, what must be kept of it: a direction takes 24, a colour 24, a number 8
+adds() { check "$1 adds bytes to a batch" test "$(of_feature "$1" batch_bytes)" -ge $(($2 * $(value batch_paths e.json))); }
 
 needs "nothing" "" ""
 base_batch=$(value batch e.json)
 equal "nothing: a batch has no more than the least" "$(value batch_base e.json)" "$base_batch"
 needs "a mirror" lobes 'material m mirror { }
 sphere { center (0, 1, 0)   radius 1   material m }'
-adds lobes
+adds lobes 72
 check "a mirror: why" grep -q '"why": "1 material has mirror-like lobes: m"' e.json
 check "a mirror: its stage" test "$(sed -n '/"name": "lobes"/,/"ns"/p' e.json | grep -c '"lobes"')" = 2
 needs "glass" interiors,lobes 'material g dielectric { }
 sphere { center (0, 1, 0)   radius 1   material g }'
-adds interiors
+adds interiors 100
 check "glass: the table of interiors" test "$(of_feature interiors table_bytes)" -gt 0
 needs "glass that nothing is made of" "" 'material g dielectric { }'
 equal "glass that nothing is made of costs nothing" "$(value batch e.json)" "$base_batch"
 needs "a mask" 'light passes' 'material m mask { material grey   opacity 0.5 }
 disk { center (0, 1, 0)   normal (0, 0, 1)   radius 1   material m }'
-adds 'light passes'
+adds 'light passes' 100
 needs "a texture" 'coordinates,textures,varying inputs' 'texture t checker { even 0.2   odd 0.7 }
 material c lambert { albedo t }
 sphere { center (0, 1, 0)   radius 1   material c }'
-adds textures
-adds coordinates
+adds textures 48
+adds coordinates 72
 equal "a checker has no pictures" "$(of_feature textures table_bytes)" 0
 needs "a point" 'point lights' 'light lonely point { position (0, 3, 3)   intensity 1 }'
-adds 'point lights'
+adds 'point lights' 100
 check "a point: why" grep -q '"why": "1 light without extent: lonely"' e.json
 needs "a sky" sky 'light all environment { radiance 1 }'
 equal "a sky: chosen with a probability" "$(awk '$1 == "\"sky_share\":" { print ($2 + 0 > 0 && $2 + 0 < 1) }' e.json)" 1
@@ -92,23 +93,23 @@ needs "a background" background '' '' 'background 1'
 equal "a background takes no bytes" "$(value batch e.json)" "$base_batch"
 kept=$head
 head=${kept/sampler cosine/sampler nee}; needs "look-ups" look-ups ''
-adds look-ups
+adds look-ups 200
 check "look-ups: why" grep -q '"why": "nee has 2 techniques, combined by the balance heuristic"' e.json
 head=${kept/sampler cosine/sampler sobol(cosine)}; needs "a source" sources ''
 head=${kept/sampler cosine/sampler bluenoise(cosine)}; needs "a source that looks at pixels" 'pixel numbers,sources' ''
-adds 'pixel numbers'
+adds 'pixel numbers' 16
 head=${kept/roulette off/roulette on}; needs "roulette" roulette ''
-adds roulette
+adds roulette 16
 head=${kept/roulette off/compat clamp}; needs "a quirk" compat ''
-adds compat
+adds compat 24
 head=${kept/camera perspective/camera thinlens}; head=${head/fov 50/fov 50   lens_radius 0.1}; needs "a lens" lens ''
 head=$kept
 needs "weights of a filter" 'filter weights' '' 'filter mitchell'
-adds 'filter weights'
+adds 'filter weights' 8
 needs "two greys" 'varying inputs' 'material other lambert { albedo 0.2 }
 sphere { center (0, 1, 0)   radius 1   material other }'
 needs "smooth triangles" 'smooth normals' 'mesh { vertices ((0, 1, 0), (1, 1, 0), (0, 2, 0))   normals ((0, 0, 1), (0, 0, 1), (0, 0.1, 1))   faces ((0, 1, 2))   material grey }'
-adds 'smooth normals'
+adds 'smooth normals' 24
 needs "many lamps" 'light tree' "$(for i in $(seq 20); do echo "disk { center ($i, 4, 0)   normal (0, -1, 0)   radius 0.1   material lamp }"; done)"
 check "many lamps: the tree has bytes" test "$(of_feature 'light tree' table_bytes)" -gt 0
 equal "many lamps: the sampler does not aim at them" "$(value emitters e.json) $(value disk e.json) $(value chosen e.json)" "21 21 by chance"
@@ -116,7 +117,7 @@ explain one.scn --sampler nee
 equal "many lamps: chosen by the tree" "$(value chosen e.json)" tree
 explain one.scn --sampler nee --layers albedo,variance --threads 3
 equal "layers are told" "$(of_feature 'feature layers' active) $(of_feature 'variance layer' active) $(value threads e.json)" "true true 3"
-adds 'feature layers'
+adds 'feature layers' 48
 check "the variance layer adds bytes to the film" test "$(of_feature 'variance layer' film_bytes)" -gt 0
 explain one.scn --time 100
 equal "rounds are told" "$(of_feature rounds active)" true
