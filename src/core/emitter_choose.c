@@ -37,11 +37,21 @@ static inline struct spot spot_of(const struct mcr_emitter_lanes *points, uint32
     return s;
 }
 
+/* About the mean of max(0, x) for x that are spread evenly over middle +- half: never 0 where one of them is above 0. */
+static inline double clipped(double middle, double half)
+{
+    double part = 0.25 * (middle + half);
+    part = part > middle ? part : middle;
+    return part > 0 ? part : 0;
+}
+
 /*
- * Importances of a node's children: power * cosine at the emitters * cosine at the surface / distance^2, each cosine the largest that the
- * ball and the cone allow, or more. With d from the ball's centre c to the point: some q of the emitters and some n of their normals has
- * n.(p - q) > 0 only if a.d / |d| + open + lift / |d| > 0; and a part of the ball is in front of the surface only if -n.d / |d| + radius / |d| > 0.
- * The distance counts as at least the radius.
+ * Importances of a node's children: power * cosine at the emitters * cosine at the surface / distance^2, each cosine about as it is on average
+ * over the ball and the cone, but never 0 where one of them is not (bounds of the cosines, in place of averages, make more than four times
+ * as much variance where surfaces scatter evenly). With d from the ball's centre c to the point: some q of the emitters and some n of their
+ * normals has n.(p - q) > 0 only if a.d / |d| + open + lift / |d| > 0; and a part of the ball is in front of the surface only if
+ * -n.d / |d| + radius / |d| > 0. Cones wider than a hemisphere's are taken for the more even the wider they are. The distance counts as at
+ * least the radius.
  */
 static __attribute__((noinline)) void importances(const struct mcr_emitter_bounds *restrict b, const struct spot *restrict s,
                                                   double *restrict out)
@@ -58,11 +68,11 @@ static __attribute__((noinline)) void importances(const struct mcr_emitter_bound
         near = near < 1e-280 ? 1e-280 : near > 1e200 ? 1e200 : near;
         double inverse = 1 / sqrt(near), sine = radius[i] * inverse;
         double along = (ax[i] * dx + ay[i] * dy + az[i] * dz) * inverse, over = -fold[i] * along;
-        double shines = (along > over ? along : over) + open[i] + lift[i] * inverse;
-        double faces = -(nx * dx + ny * dy + nz * dz) * inverse, front = sine + faces, back = sine - faces;
+        double facing = along > over ? along : over, spread = open[i] + lift[i] * inverse;
+        double faces = -(nx * dx + ny * dy + nz * dz) * inverse;
+        double shines = clipped(facing, spread), front = clipped(faces, sine), back = BEHIND * clipped(-faces, sine);
+        shines = spread > 1 ? shines + (spread - 1) : shines;
         shines = shines > 1 ? 1 : shines;
-        front = front > 1 ? 1 : front;
-        back = BEHIND * (back > 1 ? 1 : back);
         double lit = front > back ? front : back;
         lit = lit > least ? lit : least;
         shines = shines > 0 ? shines : 0;
@@ -71,31 +81,36 @@ static __attribute__((noinline)) void importances(const struct mcr_emitter_bound
     }
 }
 
-/* Running sums of eight importances; the last is their total. */
-static inline void run(const double importance[MCR_TREE_WIDTH], double sum[MCR_TREE_WIDTH])
+/*
+ * Sums of the importances before each child; the last is their total. In this order, which is shorter to wait for than one after the other,
+ * they do not fall: roundings are monotonic.
+ */
+static inline void run(const double w[MCR_TREE_WIDTH], double sum[MCR_TREE_WIDTH + 1])
 {
-    double total = 0;
-    for (uint32_t i = 0; i < MCR_TREE_WIDTH; i++)
-        sum[i] = total += importance[i];
+    double pair = w[0] + w[1], half = pair + (w[2] + w[3]), most = half + (w[4] + w[5]);
+    sum[0] = 0, sum[1] = w[0], sum[2] = pair, sum[3] = pair + w[2];
+    sum[4] = half, sum[5] = half + w[4], sum[6] = most, sum[7] = most + w[6];
+    sum[8] = most + (w[6] + w[7]);
 }
 
 /* Goes down one level. `number` and `share` are replaced. Returns the child, or INT32_MIN where there is none to choose. */
 static inline int32_t go_down(const struct mcr_emitters *all, int32_t node, const struct spot *spot, double *number, double *share)
 {
-    double importance[MCR_TREE_WIDTH] __attribute__((aligned(64))), sum[MCR_TREE_WIDTH], target;
-    uint32_t child = 0;
+    double importance[MCR_TREE_WIDTH] __attribute__((aligned(64))), sum[MCR_TREE_WIDTH + 1], total, target;
+    uint32_t child;
     importances(&all->bounds[node], spot, importance);
     run(importance, sum);
-    target = *number * sum[MCR_TREE_WIDTH - 1];
-    for (uint32_t i = 0; i + 1 < MCR_TREE_WIDTH; i++)
-        child += sum[i] <= target;
-    while (child > 0 && !(importance[child] > 0)) /* the product was rounded up to the total */
-        child--;
-    if (!(importance[child] > 0))
+    total = sum[MCR_TREE_WIDTH];
+    target = *number * total;
+    target = target < total ? target : total * LARGEST_NUMBER; /* rounded up to it */
+    child = sum[4] <= target ? 4 : 0;
+    child += sum[child + 2] <= target ? 2 : 0;
+    child += sum[child + 1] <= target;
+    if (!(importance[child] > 0)) /* all are 0, or as good as */
         return INT32_MIN;
-    double rest = (target - (child ? sum[child - 1] : 0)) / importance[child];
+    double rest = (target - sum[child]) / importance[child];
     *number = rest < LARGEST_NUMBER ? rest : LARGEST_NUMBER;
-    *share *= importance[child] / sum[MCR_TREE_WIDTH - 1];
+    *share *= importance[child] / total;
     return all->bounds[node].child[child];
 }
 
@@ -138,11 +153,11 @@ double MCR_ISA_NAME(mcr_emitter_chance)(const struct mcr_emitters *all, const st
     for (; place != MCR_TREE_ROOT; place = all->bounds[place >> 3].place)
         path[depth++] = place;
     while (depth-- > 0 && share > 0) {
-        double importance[MCR_TREE_WIDTH] __attribute__((aligned(64))), sum[MCR_TREE_WIDTH];
+        double importance[MCR_TREE_WIDTH] __attribute__((aligned(64))), sum[MCR_TREE_WIDTH + 1];
         importances(&all->bounds[path[depth] >> 3], &spot, importance);
         run(importance, sum);
         double own = importance[path[depth] & 7];
-        share = own > 0 ? share * (own / sum[MCR_TREE_WIDTH - 1]) : 0;
+        share = own > 0 ? share * (own / sum[MCR_TREE_WIDTH]) : 0;
     }
     return share;
 }
@@ -161,12 +176,12 @@ static double mass_at(const struct mcr_emitters *all, const struct mcr_emitter_l
     stack[0].share = 1;
     stack[0].node = 0;
     while (depth > 0) {
-        double importance[MCR_TREE_WIDTH] __attribute__((aligned(64))), sum[MCR_TREE_WIDTH], share = stack[--depth].share;
+        double importance[MCR_TREE_WIDTH] __attribute__((aligned(64))), sum[MCR_TREE_WIDTH + 1], share = stack[--depth].share;
         const struct mcr_emitter_bounds *node = &all->bounds[stack[depth].node];
         importances(node, &spot, importance);
         run(importance, sum);
         for (uint32_t i = 0; i < node->count; i++) {
-            double part = importance[i] > 0 ? share * (importance[i] / sum[MCR_TREE_WIDTH - 1]) : 0;
+            double part = importance[i] > 0 ? share * (importance[i] / sum[MCR_TREE_WIDTH]) : 0;
             if (!(part > 0))
                 continue;
             if (node->child[i] >= 0) {

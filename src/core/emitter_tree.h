@@ -34,8 +34,8 @@ struct mcr_emitter_node {
  * splitting", Proc. ACM Comput. Graph. Interact. Tech. 1(2), 2018): a ball around the emitters, and a cone around their normals. Unused
  * children have power 0.
  */
-struct mcr_emitter_bounds {
-    double c[3][MCR_TREE_WIDTH];    /* centre of the ball */
+struct mcr_emitter_bounds { /* whole cache lines */
+    _Alignas(64) double c[3][MCR_TREE_WIDTH]; /* centre of the ball */
     double radius[MCR_TREE_WIDTH];
     double axis[3][MCR_TREE_WIDTH]; /* of the cone, unit */
     double open[MCR_TREE_WIDTH];    /* of its half angle t: sin t below a quarter turn, 1 - cos t above; and MCR_TREE_GRACE */
