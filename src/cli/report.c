@@ -155,6 +155,9 @@ void mcr_report_warnings(FILE *to, const struct mcr_report_data *data)
     if (stats->not_finite)
         fprintf(to, "mcrender: warning: %llu samples were not finite and count as black; the first: pixel %u,%u sample %llu\n",
                 (unsigned long long)stats->not_finite, stats->not_finite_x, stats->not_finite_y, (unsigned long long)stats->not_finite_sample);
+    if (stats->overfull)
+        fprintf(to, "mcrender: warning: %llu rays entered more interiors, one inside the other, than are accounted for: the picture is wrong where these "
+                "are seen; are surfaces with interiors closed, and at most 16 deep?\n", (unsigned long long)stats->overfull);
     const struct mcr_render_settings *render = &data->loaded->scene->render;
     if (data->sampling && render->target_error > 0 && data->sampling->stopped != MCR_STOPPED_TARGET)
         fprintf(to, "mcrender: warning: the target error %.6g is not reached: stopped by %s\n", render->target_error, stopped_by(data));
@@ -287,6 +290,7 @@ static void json_work(struct mcr_json_writer *json, const struct mcr_report_data
         mcr_json_unsigned(json, "sample", stats->not_finite_sample);
         mcr_json_end(json);
     }
+    mcr_json_unsigned(json, "interiors_overfull", stats->overfull);
     mcr_json_boolean(json, "interrupted", stats->interrupted);
     mcr_json_end(json);
 }

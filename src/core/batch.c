@@ -33,7 +33,7 @@ static void cut_paths(struct cutter *c, struct mcr_paths *paths, uint32_t lanes,
     paths->planned = cut(c, lanes, sizeof(uint32_t));
     paths->bounce = cut(c, lanes, sizeof(uint32_t));
     paths->slot = cut(c, lanes, sizeof(uint32_t));
-    for (uint32_t i = 0; i < MCR_INTERIORS && core->interiors; i++)
+    for (uint32_t i = 0; i < core->interiors; i++)
         paths->inside[i] = cut(c, lanes, sizeof(uint32_t));
     if (core->needs_pixel) {
         paths->x = cut(c, lanes, sizeof(uint32_t));

@@ -35,7 +35,7 @@
 #define MCR_DIMENSION_LIGHT 24u    /* of bounce 0: 8 + 16 */
 #define MCR_DIMENSION_ROULETTE 32u /* of bounce 0: 8 + 24 */
 
-#define MCR_INTERIORS 4u /* interiors that a path remembers being in: see crossing.h */
+#define MCR_INTERIORS 16u /* interiors that a path remembers being in, at most: see crossing.h */
 
 /* A path's state, apart from where it is. */
 struct mcr_paths {
@@ -46,7 +46,7 @@ struct mcr_paths {
     uint32_t *bounce;       /* scattering events so far */
     uint32_t *slot;         /* where its radiance goes, in the ring of slots */
     double *width, *spread; /* its pixel's footprint: diameter, and how that grows with the way; NULL without surface coordinates */
-    uint32_t *inside[MCR_INTERIORS]; /* material + 1, in the order of entering, then 0; NULL where no material has an interior */
+    uint32_t *inside[MCR_INTERIORS]; /* material + 1, in the order of entering, then 0; NULL from core->interiors on */
 };
 
 /* Surface properties by primitive, for gathering. A sphere has radius > 0 and its centre in c; all others are flat (n) but for ellipsoids. */
@@ -154,7 +154,8 @@ struct mcr_core {
     uint32_t *textured_from;        /* by material: textured[textured_from[m]] .. textured[textured_from[m + 1] - 1]; NULL: nothing is textured */
     struct mcr_textured *textured;
     int varying_elsewhere;          /* the inputs of some that emit or pass are not the same everywhere */
-    int interiors, crosses;         /* some material has an interior; or that, or lets light pass */
+    uint32_t interiors;             /* that a path remembers being in; 0 where no material has one */
+    int crosses;                    /* one has, or lets light pass */
     struct mcr_interior *interior;  /* by material, where something crosses */
     uint32_t camera_inside[MCR_INTERIORS];
     uint32_t capacity;              /* rays in a batch */
@@ -337,7 +338,7 @@ struct mcr_batch {
     /* counts, summed at the end */
     uint64_t not_finite, not_finite_cell; /* of the pass */
     uint32_t not_finite_sample;
-    uint64_t camera_rays, bounce_rays, shadow_rays, scatterings, crossings;
+    uint64_t camera_rays, bounce_rays, shadow_rays, scatterings, crossings, overfull;
     double stage_seconds[MCR_STAGE_COUNT];
     double seconds_within;          /* of stages that the running one has called */
     void *memory;

@@ -96,6 +96,7 @@ struct mcr_render_stats {
     uint64_t not_finite;                     /* samples rejected and counted as black */
     uint32_t not_finite_x, not_finite_y;     /* where the first of them (in order of pixels of the first pass that has one) was */
     uint64_t not_finite_sample;
+    uint64_t overfull;                       /* rays that entered more interiors than a path remembers */
     int interrupted;
     double stage_seconds[MCR_STAGE_COUNT];   /* summed over threads; 0 without profile */
 };

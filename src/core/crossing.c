@@ -15,14 +15,28 @@
 
 /* ---- Tables ---------------------------------------------------------------------------------------------------- */
 
+/*
+ * As many as can be around one point: a shape bounds one, and a closed surface has four triangles or more. Two more are for rays that rounding let in,
+ * but not out.
+ */
+static uint32_t count_interiors(const struct mcr_scene *scene)
+{
+    uint64_t shapes = 0, triangles = 0, all;
+    for (uint32_t i = 0; i < scene->shape_count; i++)
+        shapes += (scene->material[scene->shape[i].material].traits.does & MCR_MATERIAL_INTERIOR) != 0;
+    for (uint32_t t = 0; t < scene->triangles.count; t++)
+        triangles += (scene->material[scene->triangles.material[t]].traits.does & MCR_MATERIAL_INTERIOR) != 0;
+    all = shapes + (triangles + 3) / 4;
+    return all == 0 ? 0 : all + 2 < MCR_INTERIORS ? (uint32_t)all + 2 : MCR_INTERIORS;
+}
+
 int mcr_crossing_init(struct mcr_core *core, struct mcr_arena *arena)
 {
     const struct mcr_scene *scene = core->scene;
-    for (uint32_t p = 0; p < core->surfaces.count; p++) { /* a material that no surface has costs nothing */
-        uint32_t does = scene->material[core->surfaces.material[p]].traits.does;
-        core->interiors |= (does & MCR_MATERIAL_INTERIOR) != 0;
-        core->crosses |= (does & (MCR_MATERIAL_INTERIOR | MCR_MATERIAL_PASSES)) != 0;
-    }
+    core->interiors = count_interiors(scene);
+    core->crosses = core->interiors > 0;
+    for (uint32_t p = 0; p < core->surfaces.count; p++) /* a material that no surface has costs nothing */
+        core->crosses |= (scene->material[core->surfaces.material[p]].traits.does & MCR_MATERIAL_PASSES) != 0;
     if (!core->crosses)
         return 0;
     core->interior = mcr_arena_alloc(arena, scene->material_count, sizeof *core->interior);
@@ -85,13 +99,15 @@ void mcr_surface_project(const struct mcr_core *core, int64_t primitive, double 
 
 /* Entries of `inside` are material + 1, 0 beyond the last. */
 
-static void enter(uint32_t inside[MCR_INTERIORS], uint32_t material)
+/* Returns 0 where there is no room for it. */
+static int enter(const struct mcr_core *core, uint32_t inside[MCR_INTERIORS], uint32_t material)
 {
-    for (uint32_t i = 0; i < MCR_INTERIORS; i++)
+    for (uint32_t i = 0; i < core->interiors; i++)
         if (!inside[i]) {
             inside[i] = material + 1;
-            return;
+            return 1;
         }
+    return 0;
 }
 
 /* Around all that is there. */
@@ -114,14 +130,14 @@ static void leave(uint32_t inside[MCR_INTERIORS], uint32_t material)
         inside[MCR_INTERIORS - 1] = 0;
 }
 
-static void cross(const struct mcr_core *core, uint32_t inside[MCR_INTERIORS], uint32_t material, int entering)
+static void cross(struct mcr_batch *batch, uint32_t inside[MCR_INTERIORS], uint32_t material, int entering)
 {
-    if (!core->interior[material].bounds)
+    if (!batch->core->interior[material].bounds)
         return;
-    if (entering)
-        enter(inside, material);
-    else
+    if (!entering)
         leave(inside, material);
+    else if (!enter(batch->core, inside, material))
+        batch->overfull++;
 }
 
 /* The material whose interior counts, or -1 in the open. */
@@ -170,7 +186,7 @@ static void absorb(const struct mcr_core *core, const uint32_t inside[MCR_INTERI
 static void take_inside(const struct mcr_core *core, const struct mcr_paths *paths, uint32_t lane, uint32_t inside[MCR_INTERIORS])
 {
     for (uint32_t i = 0; i < MCR_INTERIORS; i++)
-        inside[i] = core->interiors ? paths->inside[i][lane] : 0;
+        inside[i] = i < core->interiors ? paths->inside[i][lane] : 0;
 }
 
 /* ---- One ray after the other, their hits together -------------------------------------------------------------- */
@@ -262,7 +278,7 @@ static void step_on(struct mcr_batch *batch, const uint32_t *list, uint32_t coun
         double reach = core->surfaces.reach[c->hit], advance = 0;
         for (int j = 0; j < 3; j++)
             reach = mcr_max(reach, mcr_max(fabs(c->q[j]), fabs(c->o[j])));
-        cross(core, c->inside, c->material, c->side > 0);
+        cross(batch, c->inside, c->material, c->side > 0);
         for (int j = 0; j < 3; j++) {
             double to = c->q[j] - c->side * MCR_OFFSET * reach * c->n[j];
             advance += (to - c->o[j]) * c->d[j];
@@ -365,7 +381,7 @@ int32_t mcr_crossing_paths(struct mcr_batch *batch)
         paths->r[lane] *= c->factor[0];
         paths->g[lane] *= c->factor[1];
         paths->b[lane] *= c->factor[2];
-        for (uint32_t e = 0; e < MCR_INTERIORS && core->interiors; e++)
+        for (uint32_t e = 0; e < core->interiors; e++)
             paths->inside[e][lane] = c->inside[e];
         batch->crossings += c->crossings;
     }
@@ -374,7 +390,7 @@ int32_t mcr_crossing_paths(struct mcr_batch *batch)
 
 void mcr_crossing_begin(struct mcr_batch *batch, uint32_t from, uint32_t n)
 {
-    for (uint32_t i = 0; i < MCR_INTERIORS; i++)
+    for (uint32_t i = 0; i < batch->core->interiors; i++)
         for (uint32_t k = from; k < from + n; k++)
             batch->state.inside[i][k] = batch->core->camera_inside[i];
 }
@@ -386,7 +402,7 @@ void mcr_crossing_points(struct mcr_batch *batch)
     for (uint32_t k = 0; k < batch->points; k++) {
         uint32_t inside[MCR_INTERIORS], m = at->material[k];
         take_inside(core, &batch->state, batch->source[batch->order[k]], inside);
-        for (uint32_t i = 0; i < MCR_INTERIORS; i++)
+        for (uint32_t i = 0; i < core->interiors; i++)
             batch->sorted.inside[i][k] = inside[i];
         int64_t around = counts(core, inside);
         at->here[k] = at->beyond[k] = index_of(core, around);
@@ -409,8 +425,8 @@ void mcr_crossing_scattered(struct mcr_batch *batch, const struct mcr_range *ran
         if (at->gx[k] * batch->wx[k] + at->gy[k] * batch->wy[k] + at->gz[k] * batch->wz[k] >= 0)
             continue;
         take_inside(batch->core, &batch->sorted, k, inside);
-        cross(batch->core, inside, at->material[k], at->side[k] > 0);
-        for (uint32_t i = 0; i < MCR_INTERIORS; i++)
+        cross(batch, inside, at->material[k], at->side[k] > 0);
+        for (uint32_t i = 0; i < batch->core->interiors; i++)
             batch->sorted.inside[i][k] = inside[i];
     }
 }
@@ -428,7 +444,7 @@ static int32_t follow(struct mcr_batch *batch, const struct mcr_look *look, int 
         uint32_t k = look->lane[i], inside[MCR_INTERIORS];
         take_inside(core, &batch->sorted, k, inside);
         if (at->gx[k] * rays->dx[i] + at->gy[k] * rays->dy[i] + at->gz[k] * rays->dz[i] < 0)
-            cross(core, inside, at->material[k], at->side[k] > 0);
+            cross(batch, inside, at->material[k], at->side[k] > 0);
         if (!concerns(core, hit[i], inside[0]))
             continue;
         struct mcr_crossing *c = &batch->crossing[n++];
@@ -546,7 +562,7 @@ void mcr_crossing_camera(struct mcr_core *core)
             continue;
         memcpy(before, begun, sizeof before);
         if (side > 0) {
-            enter(begun, m);
+            enter(core, begun, m);
         } else {
             leave(begun, m);
             if (!memcmp(before, begun, sizeof before)) /* it was not entered on the way: the camera is inside */

@@ -3,9 +3,9 @@
  * Surfaces that a ray crosses straight on: those whose material lets light pass, and those inside of an interior of higher priority. And what lies between
  * surfaces: interiors that absorb. Nothing of this runs in scenes without such materials. Private to src/core.
  *
- * A path holds the interiors that it is in, at most MCR_INTERIORS of them, in the order in which it entered; the one that counts is that of the highest
+ * A path holds the interiors that it is in, as many as closed surfaces can nest and at most MCR_INTERIORS, in the order in which it entered; the one that counts is that of the highest
  * priority, the last entered of equals (Schmidt and Budge, "Simple nested dielectrics in ray traced images", 2002). What is entered beyond
- * MCR_INTERIORS is not remembered. Radiance falls by exp(-attenuation * distance) in the interior that counts (Bouguer, Lambert, Beer).
+ * these is not remembered, but counted: batch->overfull. Radiance falls by exp(-attenuation * distance) in the interior that counts (Bouguer, Lambert, Beer).
  *
  * Paths cross or stay by chance: they cross with the mean of the colours' shares, and their throughput is weighted by share over chance. So do look-ups that take what they meet first;
  * those that see a point cross always and are weighted by the share. In no case is a bounce counted, and the techniques' densities are those of the point where the ray began.

@@ -63,6 +63,7 @@ static void collect(struct render *render, struct mcr_render_stats *stats)
         stats->bounce_rays += batch->crossings;
         stats->scatterings += batch->scatterings;
         stats->not_finite += batch->not_finite;
+        stats->overfull += batch->overfull;
         for (int s = 0; s < MCR_STAGE_COUNT; s++)
             stats->stage_seconds[s] += batch->stage_seconds[s];
         if (batch->not_finite && batch->not_finite_cell < cell && !before) {
@@ -77,7 +78,7 @@ static void collect(struct render *render, struct mcr_render_stats *stats)
             stats->not_finite_y = film->y0 + (uint32_t)(pixel / (film->x1 - film->x0));
             stats->not_finite_sample = first + cell / pass->pixels * pass->cell_samples + batch->not_finite_sample;
         }
-        batch->camera_rays = batch->bounce_rays = batch->shadow_rays = batch->crossings = batch->scatterings = batch->not_finite = 0;
+        batch->camera_rays = batch->bounce_rays = batch->shadow_rays = batch->crossings = batch->scatterings = batch->not_finite = batch->overfull = 0;
         memset(batch->stage_seconds, 0, sizeof batch->stage_seconds);
     }
 }

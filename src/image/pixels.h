@@ -26,7 +26,7 @@ struct mcr_pixels {
 
 /*
  * Reads a picture of any format that mcr_image_read reads, within its limits. NULL after a failure, the reason, without the file's
- * name, in `error`. data: the numbers are no colours, and a colour space or primaries that we do not know are no failure.
+ * name, in `error`. data: what the numbers mean is known, and a colour space or primaries that we do not know are no failure.
  */
 struct mcr_pixels *mcr_pixels_read(const char *path, int data, char *error, size_t length);
 /* NULL is allowed. */

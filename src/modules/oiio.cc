@@ -146,13 +146,16 @@ int32_t write(const mcr_oiio_output *output, char *error, uint64_t length)
     });
 }
 
-/* How the values are encoded, by the file's colour space; floats are linear whatever it says. False: one that we do not decode. */
+/*
+ * How the values are encoded, by the file's colour space; floats are linear whatever it says. "Rec709" is what OpenImageIO makes of every PPM, and
+ * what is shown like sRGB. False: one that we do not decode.
+ */
 bool transfer(const OIIO::ImageSpec &spec, mcr_oiio_header &header, std::string &space)
 {
     space = spec.get_string_attribute("oiio:ColorSpace");
     header.transfer = header.bits ? MCR_OIIO_SRGB : MCR_OIIO_LINEAR;
     if (!header.bits || space.empty()) return true;
-    for (const char *name : {"sRGB", "srgb_rec709_scene", "srgb_rec709_display", "srgb_texture"})
+    for (const char *name : {"sRGB", "srgb_rec709_scene", "Rec709", "srgb_rec709_display", "srgb_texture"})
         if (OIIO::Strutil::iequals(space, name)) return true;
     for (const char *name : {"Linear", "scene_linear", "lin_srgb", "lin_rec709", "lin_rec709_scene"}) {
         if (!OIIO::Strutil::iequals(space, name)) continue;

@@ -181,7 +181,7 @@ void mcr_build_image(struct mcr_build *build, const struct mcr_settings *setting
     read_wrap(build, settings, texture->image.wrap);
     if (!path)
         return;
-    pixels = mcr_pixels_read(path, asked.colour == COLOUR_LINEAR, reason, sizeof reason);
+    pixels = mcr_pixels_read(path, asked.colour != COLOUR_AUTO, reason, sizeof reason);
     if (!pixels) {
         mcr_error(build, settings->value[IMAGE_FILE]->place, "cannot read '%s': %s", path, reason);
         return;

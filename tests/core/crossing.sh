@@ -107,6 +107,24 @@ box { min (-1, -1, 0.5)   max (1, 1, 2)   material b }"
     exact "overlapping interiors, $([ $lower = 1 ] && echo the upper counts || echo the lower counts)" \
         "$(calculate "$([ $lower = 1 ] && echo 'exp(-.5 - 3 * 1.5)' || echo 'exp(-1 - 3)')" x=0)" --depth 8 --sampler cosine
 done
+# nest DEEP: boxes inside of each other, box i from -(1 - .04 i) to 1 - .04 i
+nest()
+{
+    local i
+    for ((i = 0; i < $1; i++)); do
+        echo "material m$i sheet { through 1   through_chance 1   interior 1   attenuation $(calculate '.1 * (i + 1)' i=$i)   index $(calculate '1 + .1 * (i % 3)' i=$i) }
+let h$i = 1 - 0.04 * $i
+box { min (-h$i, -h$i, -h$i)   max (h$i, h$i, h$i)   material m$i }"
+    done
+}
+for deep in 9 16; do # box i is .08 thick, the innermost 2 - .08 (deep - 1)
+    straight 1 "$(nest $deep)"
+    exact "$deep interiors inside of each other" "$(calculate 'exp(-.1 * (.08 * n * (n - 1) / 2 + n * (2 - .08 * (n - 1))))' n=$deep)" --depth 40 --sampler cosine
+done
+straight 1 "$(nest 17)"
+# shellcheck disable=SC2086
+"$MCRENDER" "$scene" $plugins --size 4x4 --spp 1 --depth 40 --sampler cosine --quiet -o "$TMPDIR/deep.pfm" 2>"$TMPDIR/text"
+check 'seventeen are more than is accounted for, and it is said' grep -q 'warning: [0-9]* rays entered more interiors' "$TMPDIR/text"
 # A mask all around, and the camera inside of an interior that fills the furnace: albedo .5 at its centre, seen from .3 away.
 closed scene 'material wall sheet { radiance 1   interior 1   attenuation 0.7 }
 material dot lambert { albedo 0.5 }

@@ -28,6 +28,16 @@ done <<TEXT
 0.5 0.1 .860105072668
 1 0.5 .450693855666
 TEXT
+# Anisotropic: midpoint sums over 4000 x 4000 normals of D G2 / G1, which for equal widths are S21 to 1e-7. The quad's u is the world's x, as is the view.
+while read -r roughness lean turn cosine answer; do
+    seen "conductor { reflectance 1   roughness $roughness   anisotropy $lean   rotation $turn }" "$cosine"
+    sed -i 's/^plane.*/quad { corner (-9, -9, 0)   u (18, 0, 0)   v (0, 18, 0)   material receiver }/' "$TMPDIR/scene.scn"
+    known "anisotropy $lean, rotation $turn, cosine $cosine" "$TMPDIR/scene.scn" "$answer" 'cosine;bsdf;nee'
+done <<TEXT
+0.7 0.8 0 0.5 .672444797
+0.7 0.8 90 0.5 .743669427
+0.7 -0.5 -30 0.2 .801650447
+TEXT
 for cosine in 1 0.3; do
     seen 'oren-nayar { albedo 1   sigma 1 }' $cosine
     known "oren-nayar in the white furnace, cosine $cosine" "$TMPDIR/scene.scn" 1 "$samplers"

@@ -7,6 +7,38 @@
 . "$srcdir/tests/core/scenes.sh"
 part=quick
 
+# ---- What a file says of its colours (OpenImageIO makes "Rec709" of every PPM) ----
+if [ -f "$MCRENDER_MODULE_PATH/oiio.so" ]; then
+    start=iVBORw0KGgoAAAANSUhEUgAAAAIAAAABCAIAAAB7QOjdAAAA end=ocDig8D8BAAoFAwBV9gDKAAAAAElFTkSuQmCC
+    text=FnRFWHRvaWlvOkNvbG9yU3BhY2UA rest=AAAA9JREFUeNpjaHA4oPA/AQAKBQMAVfYAygAAAABJRU5ErkJggg==
+    echo "${start}D0lEQVR42mN$end" | base64 -d >"$TMPDIR/plain.png"
+    echo "$start${text}UmVjNzA5hT49lQ$rest" | base64 -d >"$TMPDIR/Rec709.png"
+    echo "$start${text}QUNFU2NnmT92fg$rest" | base64 -d >"$TMPDIR/ACEScg.png"
+    shown() # FILE SETTINGS: the picture of a wall that emits the texture
+    {
+        cat >"$TMPDIR/shown.scn" <<TEXT
+mcrender 1
+camera orthographic { from (0, 0, 1)   to (0, 0, 0)   height 1 }
+film { size (2, 2) }
+render { sampler cosine   depth 0   spp 4 }
+texture picture image { file "$1.png"   $2 }
+material m lambert { albedo 0   emission picture   emission_sides both }
+quad { corner (-1, -1, 0)   u (2, 0, 0)   v (0, 2, 0)   material m }
+TEXT
+        "$MCRENDER" "$TMPDIR/shown.scn" --quiet -o "$TMPDIR/$1.pfm" 2>"$TMPDIR/text"
+    }
+    for word in auto srgb linear; do
+        shown plain "colour $word"
+        check "a picture that says Rec709, colour $word" shown Rec709 "colour $word"
+        check "has the bits of one that says nothing, colour $word" cmp "$TMPDIR/plain.pfm" "$TMPDIR/Rec709.pfm"
+        [ $word != auto ] || continue
+        check "a picture of other colours, colour $word" shown ACEScg "colour $word"
+        check "has the same bits, colour $word" cmp "$TMPDIR/plain.pfm" "$TMPDIR/ACEScg.pfm"
+    done
+    refute 'a picture of other colours, taken as it says' shown ACEScg ''
+    check 'which is told where it is named' grep -q "shown.scn:5:.*cannot read '.*ACEScg.png': its colour space 'ACEScg' is not known" "$TMPDIR/text"
+fi
+
 # ---- Coordinates: a surface that emits u or v, seen at one point ----
 
 # at SHAPE FROM TO U V: what is there, to a millionth
