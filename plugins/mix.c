@@ -64,6 +64,11 @@ static int32_t create(const struct mcr_host *host, struct mcr_context *context, 
                                                       "attenuation and priority");
         status = MCR_E_INVALID;
     }
+    if (!status && (mix->traits[0].does | mix->traits[1].does) & MCR_MATERIAL_INTERIOR && (mix->traits[0].does | mix->traits[1].does) & MCR_MATERIAL_THIN) {
+        host->report(host, context, MCR_REPORT_ERROR, "one of the materials in this mix bounds an interior, the other one is a thin wall: expected the "
+                                                      "same 'thin' of both");
+        status = MCR_E_INVALID;
+    }
     if (status)
         free(mix);
     else

@@ -182,6 +182,8 @@ static int32_t traits(const struct mcr_host *host, struct mcr_context *context, 
         for (int c = 0; c < 3; c++)
             traits->attenuation[c] = attenuation_of(values->number, c);
         traits->priority = values->number[CHANNEL(PRIORITY)];
+    } else if (s.transmits) {
+        traits->does |= MCR_MATERIAL_THIN;
     }
     return MCR_OK;
 }

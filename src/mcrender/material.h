@@ -22,6 +22,7 @@ extern "C" {
 #define MCR_MATERIAL_INTERIOR 32u   /* bounds a medium: `index`, `attenuation` and `priority` of its traits */
 #define MCR_MATERIAL_PASSES 64u     /* lets light cross straight on as if there were nothing, told by `passes` */
 #define MCR_MATERIAL_LEANS 128u     /* as it is set, reads the tangents of struct mcr_points: as MCR_MATERIAL_TANGENTS, but of one instance */
+#define MCR_MATERIAL_THIN 256u      /* light goes through it and is outside again: a wall, which cannot bound a medium as well */
 
 /* Flags of descriptors. */
 /* Operations read mcr_inputs, not the instance: one call may hold points of several materials of this plugin (any stride may be 1 then). */

@@ -10,7 +10,7 @@
 
 #define ALL_COVERS (MCR_COVERS_REFLECTION | MCR_COVERS_TRANSMISSION | MCR_COVERS_EMITTERS)
 #define ALL_DOES (MCR_MATERIAL_REFLECTS | MCR_MATERIAL_TRANSMITS | MCR_MATERIAL_DELTA | MCR_MATERIAL_EMITS_FRONT | MCR_MATERIAL_EMITS_BACK | \
-                  MCR_MATERIAL_INTERIOR | MCR_MATERIAL_PASSES | MCR_MATERIAL_LEANS)
+                  MCR_MATERIAL_INTERIOR | MCR_MATERIAL_PASSES | MCR_MATERIAL_LEANS | MCR_MATERIAL_THIN)
 
 static const char *status_name(int32_t status)
 {
@@ -224,6 +224,8 @@ static const char *traits_mistake(const struct mcr_material_plugin *plugin, cons
         return "lets light pass, but has no operation passes";
     if (traits->does & MCR_MATERIAL_INTERIOR && (!(traits->index > 0) || !isfinite(traits->index) || !isfinite(traits->priority)))
         return "has an interior whose index of refraction is not above 0, or whose priority is not finite";
+    if (traits->does & MCR_MATERIAL_INTERIOR && traits->does & MCR_MATERIAL_THIN)
+        return "has an interior and is a thin wall";
     for (int c = 0; c < 3; c++)
         if (traits->does & MCR_MATERIAL_INTERIOR && (!(traits->attenuation[c] >= 0) || !isfinite(traits->attenuation[c])))
             return "tells of an attenuation that is negative or not finite";
