@@ -3,7 +3,7 @@
  * bsdf: what the material at each point would draw itself. Every material that scatters can; the host refuses those that cannot when it
  * loads them.
  */
-#include <mcrender/sampler.h>
+#include <mcrender/techniques.h>
 
 static int32_t create(const struct mcr_host *host, struct mcr_context *context, const struct mcr_creation *with, void **instance)
 {
@@ -15,26 +15,9 @@ static int32_t techniques(const struct mcr_host *host, struct mcr_context *conte
                           uint32_t *count)
 {
     (void)host, (void)context, (void)instance;
-    technique[0].kind = MCR_TECHNIQUE_DIRECTION;
-    technique[0].covers = MCR_COVERS_REFLECTION | MCR_COVERS_TRANSMISSION;
-    technique[0].continues = 1;
-    technique[0].dimensions = MCR_MATERIAL_DIMENSIONS;
+    mcr_material_technique(&technique[0]);
     *count = 1;
     return MCR_OK;
-}
-
-static int32_t draw(const struct mcr_host *host, struct mcr_context *context, const void *instance, uint32_t technique,
-                    const struct mcr_points *at, const double *const *number, const struct mcr_directions *out, double *density)
-{
-    (void)instance, (void)technique;
-    return host->material_draw(host, context, at, number, out, density);
-}
-
-static int32_t density(const struct mcr_host *host, struct mcr_context *context, const void *instance, uint32_t technique,
-                       const struct mcr_points *at, const struct mcr_directions *toward, double *density)
-{
-    (void)instance, (void)technique;
-    return host->material_density(host, context, at, toward, density);
 }
 
 MCR_HIDDEN const struct mcr_directions_plugin MCR_ISA_NAME(descriptor) = {
@@ -47,8 +30,8 @@ MCR_HIDDEN const struct mcr_directions_plugin MCR_ISA_NAME(descriptor) = {
              .summary = "directions as each material draws them itself"},
     .create = create,
     .techniques = techniques,
-    .draw = draw,
-    .density = density,
+    .draw = mcr_material_draw,
+    .density = mcr_material_density,
 };
 
 MCR_PLUGIN(struct mcr_directions_plugin, descriptor);

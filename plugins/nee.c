@@ -4,28 +4,13 @@
  * visibility is tested. The core combines what both find by multiple importance sampling (Veach and Guibas, "Optimally combining sampling
  * techniques for Monte Carlo rendering", 1995), with the heuristic that the scene names. Without lights only the first is left: bsdf.
  */
-#include <mcrender/sampler.h>
+#include <mcrender/techniques.h>
 
-/* The techniques in their order. The one that is always there comes first, so that its numbers are the same with and without lights. */
-enum { MATERIAL, EMITTER };
-
-/* The words of `by` in the order of MCR_LIGHT_BY_*. */
-static const struct mcr_parameter parameters[] = {
-    {.size = sizeof(struct mcr_parameter),
-     .type = MCR_TYPE_CHOICE,
-     .name = "by",
-     .unit = "",
-     .choices = "area|solid-angle",
-     .summary = "Measure in which points of an emitter are equally likely; solid angle falls back to area where it is not stable.",
-     .fallback = {MCR_LIGHT_BY_SOLID_ANGLE}},
-};
-
-/* Two constants, so that create has nothing to allocate: the instance points at one of them. */
-static const uint32_t by_area = MCR_LIGHT_BY_AREA, by_solid_angle = MCR_LIGHT_BY_SOLID_ANGLE;
+static const struct mcr_parameter parameters[] = {MCR_PARAMETER_BY};
 
 static int32_t create(const struct mcr_host *host, struct mcr_context *context, const struct mcr_creation *with, void **instance)
 {
-    *instance = (void *)(with->values->number[0] == MCR_LIGHT_BY_AREA ? &by_area : &by_solid_angle);
+    *instance = mcr_by_instance(with->values->number[0]);
     return mcr_without_children(host, context, with);
 }
 
@@ -33,47 +18,7 @@ static int32_t techniques(const struct mcr_host *host, struct mcr_context *conte
                           uint32_t *count)
 {
     (void)instance;
-    technique[MATERIAL].kind = MCR_TECHNIQUE_DIRECTION;
-    technique[MATERIAL].covers = MCR_COVERS_REFLECTION | MCR_COVERS_TRANSMISSION;
-    technique[MATERIAL].continues = 1;
-    technique[MATERIAL].dimensions = MCR_MATERIAL_DIMENSIONS;
-    *count = 1;
-    if (!host->has_lights(host, context))
-        return MCR_OK;
-    technique[EMITTER].kind = MCR_TECHNIQUE_EMITTER;
-    technique[EMITTER].covers = MCR_COVERS_EMITTERS;
-    technique[EMITTER].continues = 0;
-    technique[EMITTER].dimensions = MCR_LIGHT_DIMENSIONS;
-    *count = 2;
-    return MCR_OK;
-}
-
-static int32_t draw(const struct mcr_host *host, struct mcr_context *context, const void *instance, uint32_t technique,
-                    const struct mcr_points *at, const double *const *number, const struct mcr_directions *out, double *density)
-{
-    (void)instance, (void)technique;
-    return host->material_draw(host, context, at, number, out, density);
-}
-
-static int32_t density(const struct mcr_host *host, struct mcr_context *context, const void *instance, uint32_t technique,
-                       const struct mcr_points *at, const struct mcr_directions *toward, double *density)
-{
-    (void)instance, (void)technique;
-    return host->material_density(host, context, at, toward, density);
-}
-
-static int32_t draw_emitter(const struct mcr_host *host, struct mcr_context *context, const void *instance, uint32_t technique,
-                            const struct mcr_points *at, const double *const *number, const struct mcr_emitter_points *out, double *density)
-{
-    (void)technique;
-    return host->light_draw_point(host, context, *(const uint32_t *)instance, at, number, out, density);
-}
-
-static int32_t density_emitter(const struct mcr_host *host, struct mcr_context *context, const void *instance, uint32_t technique,
-                               const struct mcr_points *at, const struct mcr_emitter_points *points, double *density)
-{
-    (void)technique;
-    return host->light_density_point(host, context, *(const uint32_t *)instance, at, points, density);
+    return mcr_nee_techniques(host, context, 0, technique, count);
 }
 
 MCR_HIDDEN const struct mcr_directions_plugin MCR_ISA_NAME(descriptor) = {
@@ -88,10 +33,10 @@ MCR_HIDDEN const struct mcr_directions_plugin MCR_ISA_NAME(descriptor) = {
              .parameters = parameters},
     .create = create,
     .techniques = techniques,
-    .draw = draw,
-    .density = density,
-    .draw_emitter = draw_emitter,
-    .density_emitter = density_emitter,
+    .draw = mcr_material_draw,
+    .density = mcr_material_density,
+    .draw_emitter = mcr_emitter_draw,
+    .density_emitter = mcr_emitter_density,
 };
 
 MCR_PLUGIN(struct mcr_directions_plugin, descriptor);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* bsdf and nee: what they ask the host for, with the arrays that it handed over, and that their directions follow the densities they tell. */
+/* bsdf, nee and control: what they ask the host for, with the arrays that it handed over, and that their directions follow the densities they tell. */
 #include "stand_in.h"
 
 #define LANES 4099u
@@ -215,7 +215,7 @@ static void test_chi_square(struct mcr_child *child, const char *what)
     free(density);
 }
 
-/* Technique 1 of nee: the host's points, by what was asked for. */
+/* Technique 1 of nee and control: the host's points, by what was asked for. */
 static void test_emitter(struct mcr_child *child, uint32_t by)
 {
     struct mcr_points at = points_array(LANES);
@@ -293,21 +293,23 @@ static void test_bsdf(const struct mcr_directions_plugin *plugin)
     test_failures(&child, 0);
 }
 
-static void test_nee(const struct mcr_directions_plugin *plugin)
+/* nee, and control, which is nee but for a flag of the points' technique. */
+static void test_nee(const struct mcr_directions_plugin *plugin, uint32_t flags)
 {
     struct mcr_child child;
 
-    name = "nee";
+    name = plugin->head.name;
     context.has_lights = 0;
     ok(make_child(&child, &context, plugin, 1, 0, NULL, NULL) == MCR_OK && child.technique_count == 1 &&
            tells(&child.technique[0], MCR_TECHNIQUE_DIRECTION, ALL, 1),
-       "nee %u: without lights, the material's technique alone", isa);
+       "%s %u: without lights, the material's technique alone", name, isa);
     context.has_lights = 1;
     for (uint32_t by = MCR_LIGHT_BY_AREA; by <= MCR_LIGHT_BY_SOLID_ANGLE; by++) {
         ok(make_child(&child, &context, plugin, by, 0, NULL, NULL) == MCR_OK && child.technique_count == 2 &&
                tells(&child.technique[0], MCR_TECHNIQUE_DIRECTION, ALL, 1) &&
-               tells(&child.technique[1], MCR_TECHNIQUE_EMITTER, MCR_COVERS_EMITTERS, 0),
-           "nee %u: the material's technique continues, another draws points on emitters", isa);
+               tells(&child.technique[1], MCR_TECHNIQUE_EMITTER, MCR_COVERS_EMITTERS, 0) && child.technique[0].flags == 0 &&
+               child.technique[1].flags == flags,
+           "%s %u: the material's technique continues, another draws points on emitters", name, isa);
         test_emitter(&child, by);
     }
     test_material(&child, 17);
@@ -364,7 +366,8 @@ static void test_inside(const struct mcr_directions_plugin *bsdf, const struct m
 
 int main(void)
 {
-    const struct mcr_plugin *bsdf = load("bsdf"), *nee = load("nee"), *uniform = load("uniform"), *mixture = load("mixture"), *material = load("lambert");
+    const struct mcr_plugin *bsdf = load("bsdf"), *nee = load("nee"), *control = load("control"), *uniform = load("uniform"), *mixture = load("mixture"),
+                            *material = load("lambert");
 
     host = stand_in;
     host.material_draw = material_draw;
@@ -372,15 +375,17 @@ int main(void)
     host.light_draw_point = light_draw_point;
     host.light_density_point = light_density_point;
     for (isa = MCR_ISA_BASELINE; isa <= MCR_ISA_AVX512; isa++) {
-        const struct mcr_directions_plugin *one = descriptor_of(bsdf, isa), *two = descriptor_of(nee, isa);
+        const struct mcr_directions_plugin *one = descriptor_of(bsdf, isa), *two = descriptor_of(nee, isa),
+                                           *three = descriptor_of(control, isa);
 
         lambert = descriptor_of(material, isa);
-        if (!one || !two || !lambert) {
+        if (!one || !two || !three || !lambert) {
             tap_skip("an instruction set", "this processor or build lacks it");
             continue;
         }
         test_bsdf(one);
-        test_nee(two);
+        test_nee(two, 0);
+        test_nee(three, MCR_TECHNIQUE_CONTROL);
         test_inside(one, two, descriptor_of(uniform, isa), descriptor_of(mixture, isa));
     }
     return tap_done();
