@@ -268,6 +268,20 @@ static int decide(struct mcr_crossing *c)
     return crosses;
 }
 
+/*
+ * A ray goes through a surface and keeps its direction. Radiance over the squared index stays what it is, as where light is refracted, for else light would
+ * be made where it goes into matter by a hole and out of it by refraction.
+ */
+static void pass_through(struct mcr_batch *batch, struct mcr_crossing *c)
+{
+    const struct mcr_core *core = batch->core;
+    double here = index_of(core, counts(core, c->inside)), beyond;
+    cross(batch, c->inside, c->material, c->side > 0);
+    beyond = index_of(core, counts(core, c->inside));
+    for (int k = 0; k < 3 && here != beyond; k++)
+        c->factor[k] *= here / beyond * (here / beyond);
+}
+
 /* The next stretches of the rays listed, beyond the surfaces that they have reached. */
 static void step_on(struct mcr_batch *batch, const uint32_t *list, uint32_t count)
 {
@@ -278,7 +292,7 @@ static void step_on(struct mcr_batch *batch, const uint32_t *list, uint32_t coun
         double reach = core->surfaces.reach[c->hit], advance = 0;
         for (int j = 0; j < 3; j++)
             reach = mcr_max(reach, mcr_max(fabs(c->q[j]), fabs(c->o[j])));
-        cross(batch, c->inside, c->material, c->side > 0);
+        pass_through(batch, c);
         for (int j = 0; j < 3; j++) {
             double to = c->q[j] - c->side * MCR_OFFSET * reach * c->n[j];
             advance += (to - c->o[j]) * c->d[j];
