@@ -167,11 +167,11 @@ static int32_t delta(const struct mcr_host *host, struct mcr_context *context, c
     return status;
 }
 
-/* 1 - opacity (1 - p), p what crosses the material itself. */
+/* What is not opaque, and of the rest p, which crosses the material itself: exactly 1 and p where opacity is 0 and 1. */
 static void pass_lanes(uint32_t n, const double *restrict opacity, uint32_t stride, double *restrict out)
 {
     for (uint32_t i = 0; i < n; i++)
-        out[i] = 1 - opacity[i * stride] * (1 - out[i]);
+        out[i] = 1 - opacity[i * stride] + opacity[i * stride] * out[i];
 }
 
 static int32_t passes(const struct mcr_host *host, struct mcr_context *context, const void *instance, const struct mcr_inputs *inputs,
@@ -189,6 +189,20 @@ static int32_t passes(const struct mcr_host *host, struct mcr_context *context, 
     pass_lanes(at->n, opacity[0], stride[0], out->r);
     pass_lanes(at->n, opacity[1], stride[1], out->g);
     pass_lanes(at->n, opacity[2], stride[2], out->b);
+    return status;
+}
+
+static int32_t albedo(const struct mcr_host *host, struct mcr_context *context, const void *instance, const struct mcr_inputs *inputs,
+                      const struct mcr_points *at, const struct mcr_colours *out)
+{
+    const struct mask *mask = instance;
+    int32_t status = MCR_OK;
+
+    if (mask->traits.does & (SCATTERS | MCR_MATERIAL_DELTA))
+        status = host->material_child_albedo(host, context, mask->child, at, out);
+    else
+        clear(out);
+    multiply(inputs, out);
     return status;
 }
 
@@ -211,6 +225,7 @@ MCR_HIDDEN const struct mcr_material_plugin MCR_ISA_NAME(descriptor) = {
     .emission = emission,
     .delta = delta,
     .passes = passes,
+    .albedo = albedo,
 };
 
 MCR_PLUGIN(struct mcr_material_plugin, descriptor);

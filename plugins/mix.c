@@ -298,6 +298,12 @@ static int32_t passes(const struct mcr_host *host, struct mcr_context *context, 
     return blend_of(host, context, instance, MCR_MATERIAL_PASSES, host->material_child_passes, inputs, at, out);
 }
 
+static int32_t albedo(const struct mcr_host *host, struct mcr_context *context, const void *instance, const struct mcr_inputs *inputs,
+                      const struct mcr_points *at, const struct mcr_colours *out)
+{
+    return blend_of(host, context, instance, SCATTERS | MCR_MATERIAL_DELTA, host->material_child_albedo, inputs, at, out);
+}
+
 /* A child's answer to `delta`. */
 struct lobes {
     struct mcr_directions toward;
@@ -409,6 +415,7 @@ MCR_HIDDEN const struct mcr_material_plugin MCR_ISA_NAME(descriptor) = {
     .emission = emission,
     .delta = delta,
     .passes = passes,
+    .albedo = albedo,
 };
 
 MCR_PLUGIN(struct mcr_material_plugin, descriptor);

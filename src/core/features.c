@@ -86,6 +86,20 @@ static int32_t add_draw(struct mcr_batch *batch, const struct mcr_range *range, 
     return status;
 }
 
+/* Whether a material tells its albedo, and with it all inside that scatter. */
+static int tells_albedo(const struct mcr_core *core, const struct mcr_group *group)
+{
+    for (uint32_t l = 0; l < group->layer_count; l++) {
+        const struct mcr_node *node = group->layer[l].node;
+        const struct mcr_material_plugin *plugin = (const struct mcr_material_plugin *)(const void *)node->descriptor;
+        uint32_t does = core->scene->material[node->number].traits.does;
+        int told = plugin->head.size >= offsetof(struct mcr_material_plugin, albedo) + sizeof plugin->albedo && plugin->albedo;
+        if (!told && (does & (MCR_MATERIAL_REFLECTS | MCR_MATERIAL_TRANSMITS | MCR_MATERIAL_DELTA)))
+            return 0;
+    }
+    return 1;
+}
+
 /* Albedos of the points of a range into f->sum. */
 static int32_t albedos(struct mcr_batch *batch, const struct mcr_range *range)
 {
@@ -93,7 +107,7 @@ static int32_t albedos(struct mcr_batch *batch, const struct mcr_range *range)
     const struct mcr_group *group = &batch->core->group[range->group];
     const uint32_t n = range->end - range->begin;
     int32_t status = MCR_OK;
-    if (group->scatters && group->plugin->head.size >= offsetof(struct mcr_material_plugin, albedo) + sizeof group->plugin->albedo && group->plugin->albedo)
+    if (group->scatters && tells_albedo(batch->core, group))
         return mcr_group_albedo(batch, range, &(struct mcr_colours){sizeof(struct mcr_colours), n, f->sum[0], f->sum[1], f->sum[2]});
     for (int c = 0; c < 3; c++)
         memset(f->sum[c], 0, n * sizeof(double));
@@ -119,7 +133,7 @@ static void store(struct mcr_batch *batch, const struct mcr_range *range)
 {
     struct mcr_feature_slots *f = &batch->features;
     const struct mcr_surface_points *at = &batch->at;
-    const double *normal[3] = {at->nx, at->ny, at->nz}, per_scale = 1 / batch->core->scene->scale;
+    const double *normal[3] = {at->nx, at->ny, at->nz}, *through[3] = {batch->sorted.r, batch->sorted.g, batch->sorted.b}, per_scale = 1 / batch->core->scene->scale;
     for (uint32_t k = range->begin; k < range->end; k++) {
         const uint32_t slot = batch->sorted.slot[k];
         if (batch->sorted.bounce[k] > 0)
@@ -130,7 +144,7 @@ static void store(struct mcr_batch *batch, const struct mcr_range *range)
         for (int c = 0; c < 3 && f->normal[0]; c++)
             f->normal[c][slot] = normal[c][k];
         for (int c = 0; c < 3 && f->albedo[0]; c++)
-            f->albedo[c][slot] = f->sum[c][k - range->begin];
+            f->albedo[c][slot] = f->sum[c][k - range->begin] * through[c][k]; /* with masks before it, their and its shares add up */
     }
 }
 

@@ -170,6 +170,27 @@ static void test_albedo(const char *material, double tolerance)
     mcr_features_destroy(f);
 }
 
+/* A stained mask before a wall: what is opaque, and the wall through the rest. 262144 samples whose variance is below 1: 4 sigma are 0.008. */
+static void test_mask(void)
+{
+    static const char text[] = "camera perspective { from (0, 0, 5) to (0, 0, 0) fov 40 }\nmaterial wall lambert { albedo 0.5 }\n"
+                               "material lead lambert { albedo (0.8, 0.6, 0.4) }\nmaterial m mask { material lead opacity (0.5, 0.25, 0.75) }\n"
+                               "quad { corner (-9, -9, -1) u (18, 0, 0) v (0, 18, 0) material wall }\n"
+                               "quad { corner (-9, -9, 0) u (18, 0, 0) v (0, 18, 0) material m }\n";
+    struct mcr_features *f = render(text, "spp 1024 depth 1 sampler cosine", "box", MCR_FEATURE_ALBEDO, image);
+    double mean[3] = {0, 0, 0}, albedo[3];
+    if (!ok(f != NULL, "a mask renders"))
+        return;
+    for (uint64_t p = 0; p < PIXELS; p++) {
+        mcr_features_value(f, MCR_FEATURE_ALBEDO, p, albedo);
+        for (int c = 0; c < 3; c++)
+            mean[c] += albedo[c] / PIXELS;
+    }
+    ok(near3(mean, 0.5 * 0.8 + 0.5 * 0.5, 0.25 * 0.6 + 0.75 * 0.5, 0.75 * 0.4 + 0.25 * 0.5, 0.008), "the albedo of a mask and of what is behind it: %.4f %.4f %.4f",
+       mean[0], mean[1], mean[2]);
+    mcr_features_destroy(f);
+}
+
 /* Shading normals of a triangle, in the middle of its corners: their mean, normalised. */
 static void test_smooth(void)
 {
@@ -199,6 +220,9 @@ int main(void)
     test_albedo("lambert { albedo (0.3, 0.5, 0.9) }", 1e-9);
     test_albedo("oren-nayar { albedo (0.9, 0.5, 0.3) sigma 0.8 }", 0.002);
     test_albedo("conductor { metal gold roughness 0.5 }", 0.002);
+    test_albedo("mix { first a second b amount 0.3 }\nmaterial a lambert { albedo (0.3, 0.5, 0.9) }\nmaterial b mirror { reflectance (0.9, 0.2, 0.4) }", 0.002);
+    test_albedo("mix { first a second b amount 0.7 }\nmaterial a oren-nayar { albedo (0.9, 0.5, 0.3) sigma 0.8 }\nmaterial b emitter { radiance 0 }", 0.002);
+    test_mask();
     test_smooth();
     return tap_done();
 }
