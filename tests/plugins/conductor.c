@@ -56,18 +56,23 @@ static void test_albedo(void)
 
             set(&sheet, BY_REFLECTANCE, 1, 1, alphas[a]);
             sheet_view(&sheet, normal, cosines[m], 0.7);
-            drawn = albedo_drawn(&sheet, 512, 300 + 3 * a + m);
-            ok(drawn.error < 0.001 * exact && fabs(drawn.mean - exact) <= 4 * drawn.error && drawn.bad == 0,
-               "%u: albedo, alpha %g, cos %g, own sampling: %.6f +- %.6f, z %.2f", isa, alphas[a], cosines[m], drawn.mean, drawn.error,
-               (drawn.mean - exact) / drawn.error);
+            drawn = albedo_numbers(&sheet, 512);
+            ok(fabs(drawn.mean - exact) <= 2e-5 && drawn.bad == 0, "%u: albedo, alpha %g, cos %g, own sampling: off by %.1e", isa, alphas[a], cosines[m],
+               drawn.mean - exact);
             ok(drawn.most <= 1 + 16 * U, "%u: no weight above 1 (%.17g)", isa, drawn.most);
             /* Seen from above nothing depends on the azimuth. The midpoint rule's own error is 1.3e-5 at most: a quarter with steps halved. */
             grid = albedo_uniform(&sheet, normal, m ? 512 : 4096, m ? 1024 : 128, &mass);
             ok(fabs(grid - exact) < 2e-5, "%u: by uniform directions: off by %.1e", isa, grid - exact);
-            ok(mass >= drawn.mean - 4 * drawn.error && mass <= 1 + 2e-5, "%u: the density integrates to %.6f", isa, mass);
+            ok(mass >= drawn.mean - 2e-5 && mass <= 1 + 2e-5, "%u: the density integrates to %.6f", isa, mass);
         }
     sheet_fini(&sheet);
 }
+
+/*
+ * Steps of the chi-squares' midpoint rule in a cell. Seen from above, the lobe is alpha^2 / 2 wide in cosines; steps of h = 1 / (16 fine) err by (h / that)^2 / 24
+ * of a cell's count: 2e-3 for alpha = 0.1 with 64, 2e-4 from 0.25 on with 32; counts of 16000 err by 8e-3.
+ */
+static uint32_t fine_for(double alpha) { return alpha < 0.25 ? 64 : 32; }
 
 /* The share that is not drawn is what the density lacks: it is a cell of its own. */
 static void test_draw(void)
@@ -81,7 +86,7 @@ static void test_draw(void)
 
             set(&sheet, BY_REFLECTANCE, 1, 1, alphas[a]);
             sheet_view(&sheet, normal, cosines[m], 2.1);
-            z = chi_square(&sheet, normal, 64, 400 + 3 * a + m, &mass);
+            z = chi_square_by(&sheet, normal, 64, 400 + 3 * a + m, 0, fine_for(alphas[a]), &mass);
             ok(z <= 4, "%u: draws follow the density, alpha %g, cos %g: chi-square z %.2f, drawn at all %.4f", isa, alphas[a], cosines[m], z, mass);
         }
     sheet_fini(&sheet);
@@ -193,7 +198,8 @@ static void test_extremes(void)
 {
     static const double alpha[] = {1e-7, 1e-6, 1e-4, 0.01, 1}, mu[] = {1e-320, 1e-90, 1e-8, 1e-4, 0.5, 1}, ends[] = {0, 0x1p-60, 0.5, 1 - U};
     uint32_t bad = 0, drawn = 0, heavy = 0;
-    double sharp = 0, kept = 1;
+    static const double mirror[] = {[4] = 0.9458823818013334, [5] = 0.95195195195195195}; /* Fresnel's formulas at cosines 0.5 and 1, as in the table */
+    double sharp = 0, off = 0;
     struct sheet sheet;
 
     init(&sheet, 1);
@@ -229,14 +235,17 @@ static void test_extremes(void)
                     sum += k == 0 && d > 0 ? sheet.colour.g[i] / d / LANES : 0;
                 }
             }
-            kept = a == 0 && mu[m] >= 1e-4 ? fmin(kept, sum) : kept; /* a mirror, but for F >= .86 */
+            off = a == 0 && m >= 4 ? fmax(off, fabs(sum - mirror[m])) : off; /* but for the 16 lanes of extreme numbers, whose facets lean */
         }
     ok(bad == 0 && drawn > 60000, "%u: finite at the extremes (%u wrong, %u drawn)", isa, bad, drawn);
     ok(heavy == 0, "%u: no weight above 1 at the extremes", isa);
-    ok(kept > 0.9, "%u: alpha 1e-7 reflects as a mirror does: %.4f", isa, kept);
-    /* D at its peak is 1 / (pi alpha^2): with cosine c, f cos = D / (4 c) at the mirror direction, as G2 -> 1. */
+    ok(off < 16.0 / LANES, "%u: alpha 1e-7 reflects as a mirror does: %.1e off", isa, off);
+    /*
+     * D at its peak is 1 / (pi alpha^2): with cosine c, f cos = D G2 / (4 c) at the mirror direction, G2 = 1 / sqrt(1 + alpha^2 tan^2). Rounding: the sum
+     * of the two directions, 2 c long, leans by 4 * 2^-53 / (2 c), and D falls by the square of that over alpha.
+     */
     for (uint32_t m = 3; m < LENGTH(mu); m++) {
-        double exact = 1 / (M_PI * 1e-14 * 4 * mu[m]);
+        double tangent = sqrt((1 - mu[m]) * (1 + mu[m])) / mu[m], exact = 1 / (M_PI * 1e-14 * 4 * mu[m] * sqrt(1 + 1e-14 * tangent * tangent));
 
         set(&sheet, BY_REFLECTANCE, 1, 1, 1e-7);
         sheet_view(&sheet, upright, mu[m], 5);
@@ -244,7 +253,7 @@ static void test_extremes(void)
         sheet_evaluate(&sheet);
         sharp = fmax(sharp, fabs(sheet.colour.g[0] / exact - 1));
     }
-    ok(sharp < 1e-6, "%u: the peak at alpha 1e-7 is that of D (%.1e)", isa, sharp);
+    ok(sharp < pow(4 * U / (2 * 1e-4) / 1e-7, 2), "%u: the peak at alpha 1e-7 is that of D (%.1e)", isa, sharp);
     sheet_view(&sheet, upright, 1, 0);
     for (uint32_t i = 0; i < LANES; i++) /* seen from below the shading normal */
         ((double *)sheet.at.ox)[i] = -upright[0], ((double *)sheet.at.oy)[i] = -upright[1], ((double *)sheet.at.oz)[i] = -upright[2];
@@ -359,35 +368,62 @@ static void test_create(void)
     }
 }
 
-/* With compensation the white furnace keeps its light at every angle: to 1e-3, or 5e-5 from alpha = 0.1 on, and 4 standard errors. */
+static void set_compensation(struct sheet *sheet, double how)
+{
+    for (int i = 0; i < 8; i++)
+        sheet->copies[3 * COMPENSATION][i] = how;
+}
+
+/*
+ * What a white metal keeps of its light: single reflections by its own sampling, without compensation, and the lobe that comes back, which is what evaluate
+ * tells more with it, by the midpoint rule over 128 cosines and 32 azimuths, on which it depends little: an error of 2e-5 at most (a quarter with half
+ * the steps), to which that of albedo_numbers comes.
+ */
+static double kept(struct sheet *sheet, uint32_t side, struct estimate *single)
+{
+    double mass, with, without;
+
+    set_compensation(sheet, 0);
+    *single = albedo_numbers(sheet, side);
+    without = albedo_uniform(sheet, normal, 128, 32, &mass);
+    set_compensation(sheet, 1);
+    with = albedo_uniform(sheet, normal, 128, 32, &mass);
+    return single->mean + (with - without);
+}
+
+/*
+ * With compensation the white furnace keeps its light at every angle, as the manual says: to 0.03 % from alpha = 0.1 on, below that to 0.1 % down to the
+ * cosine 0.1, and to 0.6 % closer to the horizon.
+ */
 static void test_compensation(void)
 {
-    static const double alpha[] = {0.01, 0.03, 0.1, 0.3, 0.6, 1}, mu[] = {1, 0.7, 0.3, 0.05};
-    double worst = 0, most = 0, sharp = 0;
-    uint32_t bad = 0, off = 0;
+    static const double alpha[] = {0.001, 0.01, 0.02, 0.03, 0.1, 0.3, 0.6, 1}, mu[] = {1, 0.7, 0.3, 0.1, 0.02};
+    double worst[3] = {0, 0, 0}, most = 0;
+    uint32_t bad = 0;
     struct sheet sheet;
 
     init(&sheet, 1);
     for (uint32_t a = 0; a < LENGTH(alpha); a++)
         for (uint32_t m = 0; m < LENGTH(mu); m++) {
-            struct estimate drawn;
-            double z, mass, allowed = alpha[a] < 0.1 ? 1e-3 : 5e-5;
+            struct estimate drawn, single;
+            double z, mass, all, *of = &worst[alpha[a] >= 0.1 ? 0 : mu[m] >= 0.1 ? 1 : 2];
 
             set(&sheet, BY_REFLECTANCE, 1, 1, alpha[a]);
-            for (int i = 0; i < 8; i++)
-                sheet.copies[3 * COMPENSATION][i] = 1;
             sheet_view(&sheet, normal, mu[m], 0.3);
-            drawn = albedo_drawn(&sheet, 128, 900 + 4 * a + m);
-            off += fabs(drawn.mean - 1) > allowed + 4 * drawn.error;
-            worst = fmax(worst, fabs(drawn.mean - 1)), sharp = fmax(sharp, drawn.error), bad += drawn.bad;
-            if (a > 1)
-                most = fmax(most, drawn.most);
-            if (a > 2) {
-                z = chi_square(&sheet, normal, 32, 940 + 4 * a + m, &mass);
+            all = kept(&sheet, 256, &single);
+            *of = fmax(*of, fabs(all - 1));
+            drawn = albedo_drawn(&sheet, 8, 900 + 8 * a + m);
+            bad += drawn.bad + single.bad;
+            bad += alpha[a] >= 0.01 && fabs(drawn.mean - all) > 4 * drawn.error + 2e-5; /* below, a handful of the draws is of the lobe */
+            most = alpha[a] >= 0.1 ? fmax(most, drawn.most) : most;
+            if (alpha[a] >= 0.3 && mu[m] != 0.1) {
+                z = chi_square_by(&sheet, normal, 32, 940 + 8 * a + m, 0, fine_for(alpha[a]), &mass);
                 ok(z <= 4, "%u: compensated, draws follow the density, alpha %g, cos %g: chi-square z %.2f", isa, alpha[a], mu[m], z);
             }
         }
-    ok(off == 0 && bad == 0 && sharp < 2e-3, "%u: compensated, a white metal keeps all light (%.1e off, standard errors up to %.1e)", isa, worst, sharp);
+    ok(worst[0] < 3e-4 && worst[1] < 1e-3 && worst[2] < 6e-3, "%u: compensated, a white metal keeps all light (%.1e off, below alpha 0.1 %.1e, at the horizon %.1e)",
+       isa, worst[0], worst[1], worst[2]);
+    ok(bad == 0, "%u: compensated, what is drawn has that mean (%u wrong)", isa, bad);
     ok(most < 3, "%u: compensated, no weight above 3 from alpha 0.1 on (%.2f)", isa, most);
     sheet_fini(&sheet);
 }
@@ -411,7 +447,7 @@ static void test_anisotropy(void)
                 sheet.copies[3 * ANISOTROPY][i] = leans[k], sheet.copies[3 * ROTATION][i] = 25;
             sheet_view(&sheet, normal, mu[m], 1.1);
             if (leans[k] < 1) {
-                z = chi_square(&sheet, normal, 64, 960 + 4 * k + m, &mass);
+                z = chi_square_by(&sheet, normal, 64, 960 + 4 * k + m, 0, 64, &mass);
                 ok(z <= 4, "%u: anisotropy %g, cos %g: draws follow the density, chi-square z %.2f", isa, leans[k], mu[m], z);
             }
             sheet_toward(&sheet, 0, normal, 0.8, 4.4);
@@ -427,40 +463,41 @@ static void test_anisotropy(void)
 }
 
 /*
- * Compensated and anisotropic, a white metal creates no light (beyond 1e-3) and keeps at least 0.92 of it, as the manual says; and `albedo` tells what is
- * drawn, to 3e-3: its lattice of 144 normals is within 2e-3.
+ * Compensated and anisotropic, a white metal creates no light (beyond 2e-3) and keeps at least 0.92 of it, as the manual says; and `albedo` tells what is
+ * kept as exactly as the plugin says: to 2e-3, where it is anisotropic to 6e-3. The error of `kept` is 1e-4 at most.
  */
 static void test_whiteness(void)
 {
     static const double alpha[] = {0.05, 0.15, 0.3, 0.5, 0.75, 1}, leans[] = {0, 0.3, -0.6, 0.9, 1}, mu[] = {1, 0.8, 0.4, 0.1, 0.02}, phi[] = {0, 0.8, 1.5707};
-    double most = 0, least = 2, told = 0, error = 0;
+    double most = 0, least = 2, told[2] = {0, 0}; /* isotropic, anisotropic */
     struct sheet sheet;
 
     init(&sheet, 1);
     for (uint32_t k = 0; k < LENGTH(alpha) * LENGTH(leans) * LENGTH(mu) * LENGTH(phi); k++) {
-        double a = alpha[k % 6], lean = leans[k / 6 % 5], z = mu[k / 30 % 5], turn = phi[k / 150];
-        struct estimate e;
+        double a = alpha[k % 6], lean = leans[k / 6 % 5], z = mu[k / 30 % 5], turn = phi[k / 150], all;
+        struct estimate single;
 
+        if (lean == 0 && k >= 150) /* the azimuth changes nothing */
+            continue;
+        set(&sheet, BY_REFLECTANCE, 1, 1, a);
+        for (int i = 0; i < 8; i++)
+            sheet.copies[3 * ANISOTROPY][i] = lean;
+        sheet_view(&sheet, normal, z, turn);
+        all = kept(&sheet, 128, &single);
+        struct mcr_points few = sheet.at; /* all points are the same */
+        struct mcr_colours told_of = sheet.colour;
+        few.n = told_of.n = 8;
         for (int compensated = 0; compensated < 2; compensated++) {
-            set(&sheet, BY_REFLECTANCE, 1, 1, a);
-            for (int i = 0; i < 8; i++)
-                sheet.copies[3 * ANISOTROPY][i] = lean, sheet.copies[3 * COMPENSATION][i] = compensated;
-            sheet_view(&sheet, normal, z, turn);
-            e = albedo_drawn(&sheet, 8, 1000 + k);
-            struct mcr_points few = sheet.at; /* all points are the same */
-            struct mcr_colours told_of = sheet.colour;
-            few.n = told_of.n = 8;
+            set_compensation(&sheet, compensated);
             plugin->albedo(&stand_in, &sheet.context, NULL, &sheet.inputs, &few, &told_of);
-            told = fmax(told, fabs(sheet.colour.g[0] - e.mean) - 4 * e.error), error = fmax(error, e.error);
-            if (!compensated)
-                continue;
-            if (e.mean - 4 * e.error > 1.001 || e.mean + 4 * e.error < 0.92)
-                printf("# alpha %g, anisotropy %g, cos %g, azimuth %g: %.5f +- %.5f\n", a, lean, z, turn, e.mean, e.error);
-            most = fmax(most, e.mean - 4 * e.error), least = fmin(least, e.mean + 4 * e.error);
+            told[lean != 0] = fmax(told[lean != 0], fabs(sheet.colour.g[0] - (compensated ? fmin(all, 1) : single.mean)));
         }
+        if (all > 1.002 || all < 0.92)
+            printf("# alpha %g, anisotropy %g, cos %g, azimuth %g: %.5f\n", a, lean, z, turn, all);
+        most = fmax(most, all), least = fmin(least, all);
     }
-    ok(most <= 1.001 && least >= 0.92 && error < 0.01, "%u: anisotropic, a white metal creates no light and keeps 0.92 of it (%.5f to %.5f)", isa, least, most);
-    ok(told < 3e-3, "%u: albedo tells what is drawn (%.1e beyond 4 standard errors)", isa, told);
+    ok(most <= 1.002 && least >= 0.92, "%u: anisotropic, a white metal creates no light and keeps 0.92 of it (%.5f to %.5f)", isa, least, most);
+    ok(told[0] < 2e-3 + 1e-4 && told[1] < 6e-3 + 1e-4, "%u: albedo tells what is kept (%.1e, anisotropic %.1e)", isa, told[0], told[1]);
     sheet_fini(&sheet);
 }
 
@@ -468,7 +505,10 @@ int main(void)
 {
     const struct mcr_plugin *file = load("conductor");
     uint64_t first = 0, bits;
+    uint32_t widest = MCR_ISA_BASELINE;
 
+    for (isa = MCR_ISA_BASELINE; isa <= MCR_ISA_AVX512; isa++)
+        widest = descriptor_of(file, isa) ? isa : widest;
     for (isa = MCR_ISA_BASELINE; isa <= MCR_ISA_AVX512; isa++) {
         plugin = descriptor_of(file, isa);
         if (!plugin) {
@@ -476,7 +516,7 @@ int main(void)
             continue;
         }
         ok(plugin->flags == MCR_MATERIAL_STATELESS, "%u: stateless", isa);
-        if (isa == MCR_ISA_BASELINE) { /* the others have its bits */
+        if (isa == widest) { /* which has the baseline's bits, as is seen below */
             test_albedo();
             test_draw();
             test_compensation();
