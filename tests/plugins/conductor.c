@@ -429,6 +429,45 @@ static void test_compensation(void)
 }
 
 /*
+ * The chance of the lobe that comes back: third numbers below it draw from that lobe, others by visible normals, found by 4 rounds of LANES numbers, and so
+ * to LANES^-4; and it is what the density has of that lobe, to rounding: of one with compensation, on = (1 - s) off + s cos / pi.
+ */
+static void test_share(void)
+{
+    static const double alpha[] = {0.05, 0.3, 1}, mu[] = {1, 0.4, 0.05};
+    double worst = 0;
+    struct sheet sheet;
+
+    init(&sheet, 1);
+    for (uint32_t k = 0; k < LENGTH(alpha) * LENGTH(mu); k++) {
+        double low = 0, step = 1, on, off, cosine = 0.35 / M_PI;
+
+        set(&sheet, BY_REFLECTANCE, 1, 1, alpha[k % 3]);
+        sheet_view(&sheet, normal, mu[k / 3], 0.3);
+        sheet_toward(&sheet, 0, normal, 0.35, 1.9);
+        sheet_density(&sheet);
+        off = sheet.density[0];
+        set_compensation(&sheet, 1);
+        sheet_density(&sheet);
+        on = sheet.density[0];
+        for (int round = 0; round < 4; round++) {
+            uint32_t i = 0;
+            step /= LANES;
+            for (uint32_t j = 0; j < LANES; j++)
+                sheet.number[0][j] = 0.81, sheet.number[1][j] = 0.37, sheet.number[2][j] = low + j * step;
+            sheet.number[2][LANES - 1] = 1 - U; /* surely not from the lobe */
+            sheet_draw(&sheet);
+            while (i < LANES && (sheet.toward.x[i] != sheet.toward.x[LANES - 1] || sheet.toward.z[i] != sheet.toward.z[LANES - 1]))
+                i++;
+            low += (i ? i - 1 : 0) * step;
+        }
+        worst = fmax(worst, fabs(low - (on - off) / (cosine - off)) / (step + 16 * U * fmax(on, cosine) / fabs(cosine - off)));
+    }
+    ok(worst <= 1, "%u: compensated, the lobe is drawn by the chance that the density has of it (%.2f of the error)", isa, worst);
+    sheet_fini(&sheet);
+}
+
+/*
  * Anisotropic: draws follow the density, f is reciprocal, and a quarter turn of the tangent swaps the signs of the anisotropy.
  */
 static void test_anisotropy(void)
@@ -520,6 +559,7 @@ int main(void)
             test_albedo();
             test_draw();
             test_compensation();
+            test_share();
             test_anisotropy();
             test_whiteness();
         }
