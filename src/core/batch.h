@@ -234,6 +234,7 @@ struct mcr_crossing {
     uint64_t key;
     int64_t hit;
     double o[3], d[3], t, far, travelled; /* the running stretch begins at o, `travelled` from where the ray began */
+    double end[3];                 /* where `far` is finite */
     double q[3], n[3], side;
     double factor[3], share[3];
     double width, spread;          /* of the footprint, at where the ray began; unused without struct mcr_charts */

@@ -282,6 +282,23 @@ static void pass_through(struct mcr_batch *batch, struct mcr_crossing *c)
         c->factor[k] *= here / beyond * (here / beyond);
 }
 
+/*
+ * From where it is now, off the surface that it went through, to its end. A ray that kept its direction would pass its end by as much as large surfaces
+ * move it aside, which is more than the little by which it ends before an emitter.
+ */
+static void aim(struct mcr_crossing *c)
+{
+    double to[3], square = 0, along = 0;
+    for (int j = 0; j < 3; j++) {
+        to[j] = c->end[j] - c->o[j];
+        square += to[j] * to[j];
+        along += to[j] * c->d[j];
+    }
+    c->far = along > 0 ? sqrt(square) : 0; /* 0: the surface is as good as there */
+    for (int j = 0; j < 3 && along > 0; j++)
+        c->d[j] = to[j] / c->far;
+}
+
 /* The next stretches of the rays listed, beyond the surfaces that they have reached. */
 static void step_on(struct mcr_batch *batch, const uint32_t *list, uint32_t count)
 {
@@ -299,7 +316,8 @@ static void step_on(struct mcr_batch *batch, const uint32_t *list, uint32_t coun
             c->o[j] = to;
         }
         c->travelled += advance;
-        c->far -= advance;
+        if (c->far < INFINITY)
+            aim(c);
         c->crossings++;
         l->px[i] = c->o[0];
         l->py[i] = c->o[1];
@@ -468,6 +486,8 @@ static int32_t follow(struct mcr_batch *batch, const struct mcr_look *look, int 
                                    .width = batch->sorted.width ? batch->sorted.width[k] : 0,
                                    .spread = batch->sorted.width ? batch->sorted.spread[k] : 0};
         memcpy(c->inside, inside, sizeof inside);
+        for (int j = 0; j < 3; j++)
+            c->end[j] = c->o[j] + c->far * c->d[j];
     }
     *count = n;
     int32_t status = n ? go_on(batch, n) : MCR_OK;

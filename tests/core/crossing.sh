@@ -65,6 +65,22 @@ plane { point (0, 0, 0.9)   normal (0, 0.02, 1)   material glass }
 sphere { center (0, 0, 0)   radius 0.2   material gauze }
 sphere { center (0, 0, 0)   radius 0.1   material gauze }'
 S 'and behind two spheres of gauze' "$(calculate 'f * (.2126 * .2 + .7152 * .5 + .0722 * .8) / 4 / 4' f=.14748482740113)" "$all"
+# Large panes of nothing before a tilted lamp: rays that end at it are not moved past it.
+for half in 3 30 1e4; do
+    mean=
+    for pane in '' "let h = $half
+material nothing sheet { pass 1 }
+quad { corner (-h, -h, 0.4)   u (2 * h, 0, 0)   v (0, 2 * h, 0)   material nothing }
+quad { corner (-h, -h, 0.6)   u (2 * h, 0, 0.1 * h)   v (0, 2 * h, 0.3 * h)   material nothing }"; do
+        receiver scene '(0.3, 0.2, 0.5)' "disk { center (0, 0, 1)   normal (0.3, 0.1, -1)   radius 0.5   material both }
+$pane"
+        plain=$mean
+        # shellcheck disable=SC2086
+        render "$scene" $plugins --size 8x8 --spp 64 --seed 5 --sampler nee
+    done
+    holds 'plain > .01 && abs(mean - plain) <= 1e-9 * plain' mean="$mean" plain="$plain"
+    point $? "two panes of nothing, $half wide, hide nothing: $mean" "expected $plain"
+done
 # A lamp that is half there: half of its light, and half of the lamp behind it.
 receiver scene '(0.3, 0.2, 0.5)' 'material veil sheet { pass 0.5   radiance 3 }
 quad { corner (-2.5, -1.5, 1)   u (0, 2, 0)   v (2, 0, 0)   material both }
