@@ -313,8 +313,6 @@ static int check_layers(const struct mcr_report_data *data)
         held |= holds_layers(data->output[i].path); /* a format that cannot be written is told when the targets are opened */
     if (!held)
         fprintf(stderr, "mcrender: error: --layers: '%s' cannot hold layers, .exr can\n", data->output[0].path);
-    else if (rounds && data->options->layers & ~(uint32_t)MCR_LAYER_VARIANCE)
-        fputs("mcrender: error: --layers: with time, target_error, adaptive or a sample map there is the layer variance alone\n", stderr);
     else if (!data->options->variance_layer)
         return MCR_EXIT_DONE;
     else if (!rounds && scene->sampler->correlated && render->replicates < 2)
@@ -351,7 +349,7 @@ static int read_map(const struct mcr_report_data *data, uint32_t **map)
 }
 
 /* The rules of a render in rounds. NULL when memory is short. */
-static struct mcr_sampling *sampling_of(const struct mcr_scene *scene, struct mcr_film *film, const uint32_t *map)
+static struct mcr_sampling *sampling_of(const struct mcr_scene *scene, struct mcr_film *film, struct mcr_features *features, const uint32_t *map)
 {
     const struct mcr_render_settings *render = &scene->render;
     struct mcr_sampling_rules rules = {.time = render->time,
@@ -363,7 +361,7 @@ static struct mcr_sampling *sampling_of(const struct mcr_scene *scene, struct mc
                                        .adaptive = render->adaptive,
                                        .by_replicate = (scene->sampler->needs & MCR_NEEDS_PIXEL) != 0,
                                        .map = map};
-    return mcr_sampling_create(film, &rules);
+    return mcr_sampling_create(film, features, &rules);
 }
 
 /* From open targets to the exit status; map: NULL or the rounds of every pixel. */
@@ -378,11 +376,11 @@ static int make_and_render(struct mcr_report_data *data, struct targets *targets
                                             loaded->scene->sampler->correlated);
     uint32_t features = mcr_layers_features(data->options->layers);
     data->film = film;
-    data->features = film && features ? mcr_features_create(film->pixels, features) : NULL;
+    data->features = film && features ? mcr_features_create(film->pixels, features, mcr_render_in_rounds(how)) : NULL;
     data->accel = mcr_accel_create(loaded->arena, loaded->scene, loaded->scene->render.accel);
     data->accel_seconds = mcr_wall_seconds() - start;
     int ready = data->accel && film && (data->features || !features) && (!data->options->variance_layer || !mcr_film_keep_channels(film));
-    struct mcr_sampling *sampling = ready && mcr_render_in_rounds(how) ? sampling_of(loaded->scene, film, map) : NULL;
+    struct mcr_sampling *sampling = ready && mcr_render_in_rounds(how) ? sampling_of(loaded->scene, film, data->features, map) : NULL;
     if (ready && (sampling || !mcr_render_in_rounds(how))) {
         status = render(data, film, sampling, targets);
     } else {

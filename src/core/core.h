@@ -70,15 +70,16 @@ struct mcr_director {
     void *data;
     /* 1: *task is to be rendered; 0: all is done; -1: memory is short. seconds: since the rendering began. */
     int (*next)(void *data, double seconds, struct mcr_task *task);
-    /* Its results: cell b of entry e in cell[b * count + e]; channels NULL unless asked for. Returns 0, or -1 when memory is short. */
-    int (*take)(void *data, const struct mcr_task *task, const struct mcr_cell *cell, const struct mcr_cell_channels *channels);
+    /* Its results: cell b of entry e in cell[b * count + e]; channels and features NULL unless asked for. Returns 0, or -1 when memory is short. */
+    int (*take)(void *data, const struct mcr_task *task, const struct mcr_cell *cell, const struct mcr_cell_channels *channels,
+                const struct mcr_cell_features *features);
     int channels;                            /* the channels' moments are asked for */
 };
 
 struct mcr_render_options {
     uint32_t isa;                            /* MCR_ISA_*, not above what the processor has */
     int profile;                             /* time the stages */
-    uint32_t features;                       /* MCR_FEATURE_* that the sink's add_features takes; 0 */
+    uint32_t features;                       /* MCR_FEATURE_* that the sink's add_features takes, or the director; 0 */
     double pilot;                            /* not 0: only so many seconds of processor time, for the stats; see render.c */
     const volatile sig_atomic_t *stop;       /* not 0: end after the running pass. May be NULL */
     void (*progress)(void *data, double done, double seconds); /* done in [0,1]; called now and then on the main thread. May be NULL */

@@ -217,7 +217,7 @@ static int run_directed(struct render *render, const struct mcr_director *direct
         render->end = task.end;
         if (more > 0 && run_cells(render, 0, task.cell_samples, task.cells))
             return -1;
-        if (more < 0 || director->take(director->data, &task, pass->cell, pass->channels)) {
+        if (more < 0 || director->take(director->data, &task, pass->cell, pass->channels, pass->features)) {
             snprintf(pass->error, sizeof pass->error, "out of memory");
             return -1;
         }

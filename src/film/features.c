@@ -19,7 +19,7 @@ static int array(double **to, uint32_t asked, uint64_t count)
     return !asked || *to;
 }
 
-struct mcr_features *mcr_features_create(uint64_t pixels, uint32_t asked)
+struct mcr_features *mcr_features_create(uint64_t pixels, uint32_t asked, int by_pixel)
 {
     struct mcr_features *f = calloc(1, sizeof *f);
     if (!f)
@@ -29,7 +29,7 @@ struct mcr_features *mcr_features_create(uint64_t pixels, uint32_t asked)
     int there = array(&f->albedo, asked & MCR_FEATURE_ALBEDO, 3 * pixels) & array(&f->normal, asked & MCR_FEATURE_NORMAL, 3 * pixels) &
                 array(&f->direct, asked & MCR_FEATURE_DIRECT, 3 * pixels) & array(&f->indirect, asked & MCR_FEATURE_DIRECT, 3 * pixels) &
                 array(&f->depth, asked & MCR_FEATURE_DEPTH, pixels) &
-                array(&f->hits, asked & MCR_FEATURE_DEPTH, pixels) & array(&f->distance, asked & MCR_FEATURE_ID, pixels);
+                array(&f->hits, asked & MCR_FEATURE_DEPTH, pixels) & array(&f->distance, asked & MCR_FEATURE_ID, pixels) & array(&f->taken, by_pixel != 0, pixels);
     f->id = asked & MCR_FEATURE_ID ? calloc(pixels, sizeof *f->id) : NULL;
     if (!there || ((asked & MCR_FEATURE_ID) && !f->id)) {
         mcr_features_destroy(f);
@@ -44,6 +44,7 @@ void mcr_features_destroy(struct mcr_features *f)
 {
     if (!f)
         return;
+    free(f->taken);
     free(f->albedo);
     free(f->normal);
     free(f->direct);
@@ -61,29 +62,44 @@ static void add3(double *to, uint64_t p, const double from[3])
         to[3 * p + c] += from[c];
 }
 
+static void add(struct mcr_features *f, uint64_t p, const struct mcr_cell_features *cell)
+{
+    add3(f->albedo, p, cell->albedo);
+    add3(f->normal, p, cell->normal);
+    add3(f->direct, p, cell->direct);
+    add3(f->indirect, p, cell->indirect);
+    if (f->depth) {
+        f->depth[p] += cell->depth;
+        f->hits[p] += cell->hits;
+    }
+    if (f->id && cell->distance < f->distance[p]) {
+        f->distance[p] = cell->distance;
+        f->id[p] = cell->id;
+    }
+}
+
 int mcr_features_add(void *features, const struct mcr_cell_features *cell, uint32_t count)
 {
     struct mcr_features *f = features;
-    for (uint64_t p = 0; p < f->pixels; p++) {
-        add3(f->albedo, p, cell[p].albedo);
-        add3(f->normal, p, cell[p].normal);
-        add3(f->direct, p, cell[p].direct);
-        add3(f->indirect, p, cell[p].indirect);
-        if (f->depth) {
-            f->depth[p] += cell[p].depth;
-            f->hits[p] += cell[p].hits;
-        }
-        if (f->id && cell[p].distance < f->distance[p]) {
-            f->distance[p] = cell[p].distance;
-            f->id[p] = cell[p].id;
-        }
-    }
+    for (uint64_t p = 0; p < f->pixels; p++)
+        add(f, p, &cell[p]);
     f->samples += count;
     return 0;
 }
 
+void mcr_features_take(struct mcr_features *f, const struct mcr_task *task, const struct mcr_cell_features *cell)
+{
+    for (uint32_t e = 0; e < task->count; e++) {
+        uint32_t p = task->entry[e].pixel;
+        for (uint32_t b = 0; b < task->cells; b++)
+            add(f, p, &cell[(uint64_t)b * task->count + e]);
+        f->taken[p] += (double)task->cells * task->cell_samples;
+    }
+}
+
 void mcr_features_value(const struct mcr_features *f, uint32_t layer, uint64_t p, double *out)
 {
+    const double samples = f->taken ? f->taken[p] : (double)f->samples;
     const double *triple = layer == MCR_FEATURE_ALBEDO   ? f->albedo
                            : layer == MCR_FEATURE_NORMAL ? f->normal
                            : layer == MCR_FEATURE_DIRECT ? f->direct
@@ -94,5 +110,5 @@ void mcr_features_value(const struct mcr_features *f, uint32_t layer, uint64_t p
         *out = f->id[p];
     else
         for (int c = 0; c < 3; c++)
-            out[c] = f->samples ? triple[3 * p + c] / (double)f->samples : 0;
+            out[c] = samples > 0 ? triple[3 * p + c] / samples : 0;
 }

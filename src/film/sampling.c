@@ -16,6 +16,7 @@ enum { IMAGE, SCOUT };
 
 struct mcr_sampling {
     struct mcr_film *film;
+    struct mcr_features *features;    /* or NULL */
     struct mcr_sampling_rules rules;
     uint64_t pixels;
     uint32_t round[2], cells[2], cell_samples[2]; /* of the picture's and of the scouts' rounds */
@@ -95,12 +96,13 @@ static int allocate_arrays(struct mcr_sampling *s)
     return missing || !s->entry ? -1 : 0;
 }
 
-struct mcr_sampling *mcr_sampling_create(struct mcr_film *film, const struct mcr_sampling_rules *rules)
+struct mcr_sampling *mcr_sampling_create(struct mcr_film *film, struct mcr_features *features, const struct mcr_sampling_rules *rules)
 {
     struct mcr_sampling *s = calloc(1, sizeof *s);
     if (!s)
         return NULL;
     s->film = film;
+    s->features = features;
     s->rules = *rules;
     s->pixels = film->pixels;
     s->which = SCOUT;
@@ -411,9 +413,12 @@ static void take_scouts(struct mcr_sampling *s, const struct mcr_task *task, con
     s->moment[p] += (s->film->correlated ? 0 : moment) + difference * difference * (before * units / (before + units));
 }
 
-static int take(void *data, const struct mcr_task *task, const struct mcr_cell *cell, const struct mcr_cell_channels *channels)
+static int take(void *data, const struct mcr_task *task, const struct mcr_cell *cell, const struct mcr_cell_channels *channels,
+                const struct mcr_cell_features *features)
 {
     struct mcr_sampling *s = data;
+    if (s->which == IMAGE && s->features)
+        mcr_features_take(s->features, task, features);
     if (s->which == IMAGE)
         return mcr_film_take(s->film, task, cell, channels);
     for (uint32_t e = 0; e < task->count; e++)

@@ -20,6 +20,7 @@
 #ifndef MCR_FILM_SAMPLING_H
 #define MCR_FILM_SAMPLING_H
 
+#include "film/features.h"
 #include "film/film.h"
 
 #define MCR_SAMPLING_LOOK 64u /* samples a pixel before the error is first compared with the target */
@@ -48,8 +49,11 @@ struct mcr_sampling_rules {
 
 struct mcr_sampling;
 
-/* For a film that is empty; makes it a film by pixel. NULL when memory is short. The film is borrowed. */
-struct mcr_sampling *mcr_sampling_create(struct mcr_film *film, const struct mcr_sampling_rules *rules);
+/*
+ * For a film that is empty; makes it a film by pixel. features: layers of the same pixels, created by_pixel, or NULL. NULL when memory is short. Film
+ * and features are borrowed.
+ */
+struct mcr_sampling *mcr_sampling_create(struct mcr_film *film, struct mcr_features *features, const struct mcr_sampling_rules *rules);
 void mcr_sampling_destroy(struct mcr_sampling *sampling);
 struct mcr_director mcr_sampling_director(struct mcr_sampling *sampling);
 

@@ -49,6 +49,10 @@ done
 run "$box" --size 24x16 --spp 21 --seed 3 -o every.pfm
 run compare every.exr every.pfm --fail-above mse=0
 equal "the picture is the same with every layer" "$status" 0
+run "$box" --size 24x16 --spp 64 --adaptive --layers $every -o rounds.exr -o rounds.pfm
+ends "every layer, where pixels differ in samples" 0 "wrote     rounds.exr with layers" "adaptive: "
+run compare rounds.exr rounds.pfm --fail-above mse=0
+equal "the picture of it" "$status" 0
 run "$box" --size 8x8 --spp 1 --layers depth -o one.exr
 ends "one sample is enough for depth" 0 "wrote     one.exr with layers"
 run "$box" --size 8x8 --spp 7 --sampler 'stratified(cosine)' --replicates 3 --layers variance -o r.exr

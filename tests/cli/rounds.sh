@@ -96,7 +96,6 @@ for other in '--spp 4' '--time 1' '--target-error 1' --adaptive; do no_map 2 "${
 no_map 2 "every pixel has spp samples" --sample-map map2.pfm
 for name in map2.ppm map2.png map2; do no_map 2 "--sample-map: " --adaptive --sample-map $name; done
 no_map 1 "" --adaptive --sample-map absent/map2.pfm
-no_map 2 "there is the layer variance alone" --adaptive --layers albedo -o out.exr
 no_map 2 "are the same file" --adaptive --sample-map out.pfm
 
 # ---- values ---------------------------------------------------------------------------------------------------------------------------

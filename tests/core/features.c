@@ -10,6 +10,7 @@
 #include "core/core.h"
 #include "film/features.h"
 #include "film/film.h"
+#include "film/sampling.h"
 
 #define SIDE 16
 #define PIXELS (SIDE * SIDE)
@@ -17,8 +18,10 @@
 
 static double image[3 * PIXELS], plain[3 * PIXELS];
 
-/* Renders; NULL after a failure, or where nothing is asked for. The picture goes to rgb. */
-static struct mcr_features *render(const char *text, const char *settings, const char *filter, uint32_t asked, double *rgb)
+#define ROUND 16u
+
+/* Renders; NULL after a failure, or where nothing is asked for. map: rounds of each pixel, or NULL. The picture goes to rgb. */
+static struct mcr_features *render_by(const uint32_t *map, const char *text, const char *settings, const char *filter, uint32_t asked, double *rgb)
 {
     char whole[4000];
     struct mcr_overrides over = {.has_threads = 1, .threads = 2};
@@ -27,13 +30,20 @@ static struct mcr_features *render(const char *text, const char *settings, const
     if (!world.scene)
         return NULL;
     struct mcr_film *film = mcr_film_create(SIDE, SIDE, world.scene->sampler->correlated);
-    struct mcr_features *features = asked ? mcr_features_create(PIXELS, asked) : NULL;
+    struct mcr_features *features = asked ? mcr_features_create(PIXELS, asked, map != NULL) : NULL;
+    const struct mcr_sampling_rules rules = {.round = ROUND, .map = map};
+    struct mcr_sampling *sampling = map ? mcr_sampling_create(film, features, &rules) : NULL;
+    struct mcr_director director;
     struct mcr_render_options how = {.isa = MCR_ISA_BASELINE, .features = asked};
     struct mcr_render_stats stats;
     char error[256] = "";
     struct mcr_cell_sink sink = mcr_film_sink(film);
     sink.add_features = mcr_features_add;
     sink.features = features;
+    if (sampling) {
+        director = mcr_sampling_director(sampling);
+        how.director = &director;
+    }
     struct mcr_accel *accel = mcr_accel_create(world.arena, world.scene, world.scene->render.accel);
     if (mcr_render(world.scene, accel, &how, &sink, &stats, error, sizeof error)) {
         fprintf(stderr, "%s\n", error);
@@ -41,9 +51,15 @@ static struct mcr_features *render(const char *text, const char *settings, const
         features = NULL;
     }
     mcr_film_mean(film, rgb);
+    mcr_sampling_destroy(sampling);
     mcr_film_destroy(film);
     close_world(&world);
     return features;
+}
+
+static struct mcr_features *render(const char *text, const char *settings, const char *filter, uint32_t asked, double *rgb)
+{
+    return render_by(NULL, text, settings, filter, asked, rgb);
 }
 
 static double largest_difference(const double *a, const double *b, size_t n)
@@ -205,6 +221,41 @@ static void test_smooth(void)
     mcr_features_destroy(f);
 }
 
+/* In rounds a pixel has the layers that it has in a render with as many samples everywhere. */
+static void test_rounds(void)
+{
+    static const uint32_t layers[] = {MCR_FEATURE_ALBEDO, MCR_FEATURE_NORMAL, MCR_FEATURE_DEPTH, MCR_FEATURE_ID, MCR_FEATURE_DIRECT, MCR_FEATURE_INDIRECT};
+    uint32_t map[PIXELS];
+    double most = 0, different = 0;
+    for (uint32_t p = 0; p < PIXELS; p++)
+        map[p] = 1 + p % 3;
+    struct mcr_features *mapped = render_by(map, ROOM, "seed 5 depth 3 sampler nee", "tent", ALL, image);
+    if (!ok(mapped != NULL, "in rounds"))
+        return;
+    for (uint32_t n = 1; n <= 3; n++) {
+        char settings[100];
+        snprintf(settings, sizeof settings, "spp %u seed 5 depth 3 sampler nee", n * ROUND);
+        struct mcr_features *whole = render(ROOM, settings, "tent", ALL, plain);
+        if (!ok(whole != NULL, "with %u samples", n * ROUND))
+            return;
+        for (uint32_t p = 0; p < PIXELS; p++)
+            for (uint32_t i = 0; i < 6; i++) {
+                double a[3] = {0}, b[3] = {0}, off;
+                mcr_features_value(mapped, layers[i], p, a);
+                mcr_features_value(whole, layers[i], p, b);
+                off = fmax(fabs(a[0] - b[0]), fmax(fabs(a[1] - b[1]), fabs(a[2] - b[2])));
+                if (map[p] == n)
+                    most = fmax(most, off);
+                else
+                    different += off;
+            }
+        mcr_features_destroy(whole);
+    }
+    ok(most < 1e-13 * 4, "in rounds every pixel has the layers of its number of samples (%.2g)", most);
+    ok(different > 1, "which are others with other numbers (%.3g)", different);
+    mcr_features_destroy(mapped);
+}
+
 int main(void)
 {
     test_parts("cosine", "box", "", 0);
@@ -223,6 +274,7 @@ int main(void)
     test_albedo("mix { first a second b amount 0.3 }\nmaterial a lambert { albedo (0.3, 0.5, 0.9) }\nmaterial b mirror { reflectance (0.9, 0.2, 0.4) }", 0.002);
     test_albedo("mix { first a second b amount 0.7 }\nmaterial a oren-nayar { albedo (0.9, 0.5, 0.3) sigma 0.8 }\nmaterial b emitter { radiance 0 }", 0.002);
     test_mask();
+    test_rounds();
     test_smooth();
     return tap_done();
 }

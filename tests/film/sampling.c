@@ -59,7 +59,7 @@ static int render_task(uint64_t seed, const struct mcr_director *director, const
                 v[i] = sample(seed, &task->entry[e], task->entry[e].first + b * task->cell_samples + i, correlated);
             mcr_cell_sum(v, v, v, task->cell_samples, &cell[b * task->count + e]);
         }
-    return director->take(director->data, task, cell, NULL);
+    return director->take(director->data, task, cell, NULL, NULL);
 }
 
 struct picture {
@@ -76,7 +76,7 @@ static struct picture run(uint64_t seed, const struct mcr_sampling_rules *rules,
     static double rgb[3 * PIXELS];
     struct picture picture;
     struct mcr_film *film = mcr_film_create(WIDTH, HEIGHT, correlated);
-    struct mcr_sampling *sampling = mcr_sampling_create(film, rules);
+    struct mcr_sampling *sampling = mcr_sampling_create(film, NULL, rules);
     struct mcr_director director = mcr_sampling_director(sampling);
     struct mcr_task task = {.incomplete = 0};
     double seconds = 0;
