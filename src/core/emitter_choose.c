@@ -114,6 +114,15 @@ static inline int32_t go_down(const struct mcr_emitters *all, int32_t node, cons
     return all->bounds[node].child[child];
 }
 
+/* Asks for what is read next, after all other lanes: a node, or an emitter's constants. Worth a tenth of a sample's time among 10,000. */
+static inline void fetch(const struct mcr_emitters *all, int32_t child)
+{
+    const char *at = child >= 0 ? (const char *)&all->bounds[child] : (const char *)all->k[child != INT32_MIN ? ~child : 0];
+    const uint32_t bytes = child >= 0 ? sizeof *all->bounds : sizeof *all->k;
+    for (uint32_t b = 0; b < bytes; b += 64)
+        __builtin_prefetch(at + b);
+}
+
 void MCR_ISA_NAME(mcr_emitter_choose)(const struct mcr_emitters *all, const struct mcr_emitter_lanes *points, const double *restrict number,
                                       struct mcr_emitter_scratch *scratch)
 {
@@ -137,6 +146,7 @@ void MCR_ISA_NAME(mcr_emitter_choose)(const struct mcr_emitters *all, const stru
             d->list[left] = i;
             left += child >= 0;
             scratch->chosen[i] = child < 0 && child != INT32_MIN ? ~child : -1;
+            fetch(all, child);
         }
         count = left;
     }
