@@ -38,7 +38,7 @@ material lace mask { material glass   opacity 0.6 }
 sphere { center (0, 0, 0)   radius 1   material ball }
 TEXT
     printf '%s\n' "$@" >>"$scene"
-    known "furnace: $1" "$scene" 1 'bsdf;cosine'
+    known "furnace: $1" "$scene" 1 "${samplers:-bsdf;cosine}"
 }
 ball 'material ball mix { first white   second shiny   amount 0.4 }'
 ball 'material ball mix { first glass   second white   amount 0.3 }'
@@ -51,6 +51,13 @@ ball 'material ball mask { material glass   opacity board }'
 ball 'material ball mask { material part   opacity 0.5 }' 'material part mix { first glass   second white   amount 0.2 }'
 ball 'material ball mix { first lace   second white   amount 0.3 }'
 ball 'material ball mask { material water   opacity 0.5 }' 'sphere { center (0.3, 0, 0)   radius 0.9   material lace }'
+
+# A coat over a base is two in one as well, by one plugin
+ball 'material ball glossy { albedo 1   roughness 0 }'
+samplers=bsdf ball 'material ball glossy { albedo 1   roughness 0.05 }'
+ball 'material ball glossy { albedo 1   roughness 0.6   index 1.8 }'
+samplers=bsdf ball 'material ball mix { first part   second white   amount board }' 'texture rough gradient { from 0.01   to 0.9   along u }' \
+    'material part glossy { albedo 1   roughness rough }'
 
 # ---- Interiors: a slab, seen straight on, under a light of 1 from everywhere ----
 
