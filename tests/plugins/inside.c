@@ -802,6 +802,16 @@ static void test_interiors(void)
         unmake(&m);
     }
     ok(wrong == 0, "%u a mix of different matter is refused: %s", isa, context.message);
+    open.does |= MCR_MATERIAL_THIN;
+    two = cook(&open);
+    mask_of(&over, &two, opacity, 0, 8);
+    for (int turn = 0; turn < 4; turn++) { /* a mask over a thin wall is one */
+        const struct matter *thin = turn < 2 ? &two : &over;
+        wrong += mix_of(&m, turn % 2 ? thin : &one, turn % 2 ? &one : thin, 0.5, 0, 8) != MCR_E_INVALID || !strstr(context.message, "thin");
+        unmake(&m);
+    }
+    unmake(&over);
+    ok(wrong == 0, "%u a mix of matter and of a thin wall is refused: %s", isa, context.message);
 }
 
 /* A material that fails, in either place: its failure is handed on, from every operation. */
