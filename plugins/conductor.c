@@ -102,12 +102,6 @@ static const struct mcr_parameter parameters[PARAMETERS] = {
                       .fallback = {0}},
 };
 
-static int32_t refuse(const struct mcr_host *host, struct mcr_context *context, const char *text)
-{
-    host->report(host, context, MCR_REPORT_ERROR, text);
-    return MCR_E_INVALID;
-}
-
 /* What would be ignored is a mistake. */
 static int32_t create(const struct mcr_host *host, struct mcr_context *context, const struct mcr_creation *with, void **instance)
 {
@@ -116,9 +110,9 @@ static int32_t create(const struct mcr_host *host, struct mcr_context *context, 
 
     *instance = NULL;
     if (given[REFLECTANCE] && metal != BY_REFLECTANCE)
-        return refuse(host, context, "'reflectance' has no effect with this 'metal': it belongs to 'metal reflectance', the default");
+        return mcr_refuse(host, context, "'reflectance' has no effect with this 'metal': it belongs to 'metal reflectance', the default");
     if ((given[ETA] || given[K]) && metal != BY_INDEX)
-        return refuse(host, context, "'eta' and 'k' have no effect without 'metal index'");
+        return mcr_refuse(host, context, "'eta' and 'k' have no effect without 'metal index'");
     return MCR_OK;
 }
 

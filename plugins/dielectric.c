@@ -80,12 +80,6 @@ static const struct mcr_parameter parameters[PARAMETERS] = {
                   .max = 1e9},
 };
 
-static int32_t refuse(const struct mcr_host *host, struct mcr_context *context, const char *text)
-{
-    host->report(host, context, MCR_REPORT_ERROR, text);
-    return MCR_E_INVALID;
-}
-
 /* Light falls by exp(-attenuation distance). */
 static double attenuation_of(const struct mcr_values *values, int c)
 {
@@ -101,14 +95,14 @@ static int32_t create(const struct mcr_host *host, struct mcr_context *context, 
 
     *instance = NULL;
     if (with->values->number[CHANNEL(THIN)] != 0 && (given[DEPTH] || given[ATTENUATION] || given[PRIORITY]))
-        return refuse(host, context, "'depth', 'attenuation' and 'priority' have no effect with 'thin yes': a thin wall has no interior");
+        return mcr_refuse(host, context, "'depth', 'attenuation' and 'priority' have no effect with 'thin yes': a thin wall has no interior");
     if (given[TRANSMITTANCE] && given[ATTENUATION])
-        return refuse(host, context, "'transmittance' and 'attenuation' say the same: give one of them");
+        return mcr_refuse(host, context, "'transmittance' and 'attenuation' say the same: give one of them");
     if (given[DEPTH] && !given[TRANSMITTANCE])
-        return refuse(host, context, "'depth' has no effect without 'transmittance'");
+        return mcr_refuse(host, context, "'depth' has no effect without 'transmittance'");
     for (int c = 0; c < 3 && with->values->number[CHANNEL(THIN)] == 0; c++)
         if (!(attenuation_of(with->values, c) < HUGE_VAL))
-            return refuse(host, context, "'depth' is too small for this 'transmittance': the attenuation is infinite");
+            return mcr_refuse(host, context, "'depth' is too small for this 'transmittance': the attenuation is infinite");
     return MCR_OK;
 }
 
@@ -259,15 +253,9 @@ static int32_t delta(const struct mcr_host *host, struct mcr_context *context, c
 /* What one lane scatters from o to w: the value without the shares, the density with them, the cosine at the facet, whether w is on the other side. */
 MCR_INLINE struct mcr_ggx facet_lane(double alpha, double ratio, double thin, struct mcr_vector o, struct mcr_vector w)
 {
-    struct mcr_vector up = mcr_vector(w.x, w.y, fabs(w.z));
-    struct mcr_ggx reflected = mcr_ggx_reflect(alpha, alpha, o, up), refracted = mcr_ggx_transmit(alpha, alpha, o, w, ratio), g;
-    int bends = (thin == 0) & (w.z < 0);
-    struct shares f;
+    struct mcr_ggx g = mcr_ggx_interface(alpha, ratio, thin != 0, o, w);
+    struct shares f = shares_of(g.cosine, ratio, thin, 1);
 
-    g.value = bends ? refracted.value : reflected.value;
-    g.density = bends ? refracted.density : reflected.density;
-    g.cosine = bends ? refracted.cosine : reflected.cosine;
-    f = shares_of(g.cosine, ratio, thin, 1);
     g.density *= w.z < 0 ? f.passed : f.reflected;
     return g;
 }
@@ -344,7 +332,7 @@ static void draw_lanes(const struct mcr_points *at, const struct interface *s, c
         struct mcr_frame f = mcr_frame(mcr_vector(nx[i], ny[i], nz[i]), mcr_vector(tx[i], ty[i], tz[i]));
         struct mcr_vector o = mcr_to_frame(f, mcr_vector(ox[i], oy[i], oz[i])), m, l, t, w;
         int visible = o.z > MCR_GGX_HORIZON, second, right;
-        double length, c, bent = mcr_ggx_index(ratio[i]), root2, above;
+        double length, c, above;
         struct shares share;
 
         o.z = visible ? o.z : 1;
@@ -358,11 +346,7 @@ static void draw_lanes(const struct mcr_points *at, const struct interface *s, c
         c = c < 1 ? c : 1;
         share = shares_of(c, ratio[i], thin[i], 1);
         second = choice[i] >= share.reflected;
-        root2 = (bent - 1) * (bent + 1) + c * c;
-        t = mcr_refracted(o, m, c, bent, sqrt(root2 > 0 ? root2 : 0));
-        t.x = thin[i] != 0 ? l.x : t.x; /* a thin wall passes the mirrored direction's image on the other side */
-        t.y = thin[i] != 0 ? l.y : t.y;
-        t.z = thin[i] != 0 ? -l.z : t.z;
+        t = mcr_ggx_passed(o, m, c, l, ratio[i], thin[i] != 0);
         l.x = second ? t.x : l.x;
         l.y = second ? t.y : l.y;
         l.z = second ? t.z : l.z;
@@ -372,17 +356,6 @@ static void draw_lanes(const struct mcr_points *at, const struct interface *s, c
         x[i] = right ? w.x : 0;
         y[i] = right ? w.y : 0;
         z[i] = right ? w.z : 0;
-    }
-}
-
-/* Where rounding leaves no density, as close to index 1, nothing was drawn. */
-static void drop_lanes(uint32_t n, const double *restrict density, double *restrict x, double *restrict y, double *restrict z)
-{
-    for (uint32_t i = 0; i < n; i++) {
-        int drawn = density[i] > 0;
-        x[i] = drawn ? x[i] : 0;
-        y[i] = drawn ? y[i] : 0;
-        z[i] = drawn ? z[i] : 0;
     }
 }
 
@@ -398,7 +371,7 @@ static int32_t draw(const struct mcr_host *host, struct mcr_context *context, co
     draw_lanes(at, &s, tangent, number, out->x, out->y, out->z);
     density = density ? density : room + VALUES * mcr_padded(at->n);
     density_lanes(at, &s, tangent, out->x, out->y, out->z, density);
-    drop_lanes(at->n, density, out->x, out->y, out->z);
+    mcr_drop_lanes(at->n, density, out->x, out->y, out->z);
     return MCR_OK;
 }
 

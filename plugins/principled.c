@@ -22,96 +22,11 @@
  * The layers are on both sides, as are metal and plastic. Smooth lobes (roughness 0 everywhere) are found by `delta`. A texture of roughness that is not 0
  * everywhere makes lobes, of 1e-7 rad where it is 0.
  */
-#include <mcrender/math.h>
-#include <mcrender/microfacet.h>
+#include "principled_base.h"
+#include "principled_lanes.h"
 #include <stdlib.h>
 
-/* Parameters, in the order of the table. */
-enum {
-    BASE, METALLIC, ROUGHNESS, IOR, SPECULAR, SPECULAR_COLOR, CLEARCOAT, CLEARCOAT_ROUGHNESS, SHEEN_COLOR, SHEEN_ROUGHNESS, TRANSMISSION, THIN,
-    ATTENUATION_COLOR, ATTENUATION_DISTANCE, PRIORITY, COMPENSATION, PARAMETERS
-};
-#define CHANNEL(parameter) (3 * (parameter))
-
-#define SHARE(word, text, standard)                                                                                                            \
-    {                                                                                                                                          \
-        .size = sizeof(struct mcr_parameter), .type = MCR_TYPE_NUMBER, .flags = MCR_PARAMETER_VARYING, .name = word, .unit = "", .summary = text, \
-        .fallback = {standard}, .min = 0, .max = 1                                                                                             \
-    }
-#define COLOUR(word, text, standard, most, how)                                                                                                \
-    {                                                                                                                                          \
-        .size = sizeof(struct mcr_parameter), .type = MCR_TYPE_COLOUR, .flags = how, .name = word, .unit = "", .summary = text,                \
-        .fallback = {standard, standard, standard}, .min = 0, .max = most                                                                      \
-    }
-
-static const struct mcr_parameter parameters[PARAMETERS] = {
-    [BASE] = COLOUR("base_color", "A metal's reflectance seen from straight above, else the share that is scattered diffusely or tints what is transmitted.",
-                    1, 1, MCR_PARAMETER_VARYING),
-    [METALLIC] = SHARE("metallic", "How much of the surface is metal: 0 or 1, between them a blend (glTF's own default is 1).", 0),
-    [ROUGHNESS] = SHARE("roughness", "Perceptual, as in glTF: its square is GGX's alpha, which other materials here call roughness; 0 is smooth.", 0.5),
-    [IOR] = {.size = sizeof(struct mcr_parameter),
-             .type = MCR_TYPE_NUMBER,
-             .name = "ior",
-             .unit = "",
-             .summary = "Index of refraction of what is not metal.",
-             .fallback = {1.5},
-             .min = 1,
-             .max = 1e3},
-    [SPECULAR] = SHARE("specular", "Scales the reflection of what is not metal, at all angles.", 1),
-    [SPECULAR_COLOR] = COLOUR("specular_color", "Scales the reflection of what is not metal seen from straight above, up to 1.", 1, 1e6, MCR_PARAMETER_VARYING),
-    [CLEARCOAT] = SHARE("clearcoat", "How much of the surface has a clear coat of index 1.5 on top.", 0),
-    [CLEARCOAT_ROUGHNESS] = SHARE("clearcoat_roughness", "The coat's roughness, perceptual like `roughness`; 0 is smooth.", 0),
-    [SHEEN_COLOR] = COLOUR("sheen_color", "Colour and strength of the sheen of fibres, as of velvet, under the coat and over all else.", 0, 1, MCR_PARAMETER_VARYING),
-    [SHEEN_ROUGHNESS] = SHARE("sheen_roughness", "Perceptual: its square is the alpha of the fibres' distribution; below 0.1 as 0.1.", 0.3),
-    [TRANSMISSION] = SHARE("transmission", "How much of what is not metal lets light through instead of scattering it diffusely.", 0),
-    [THIN] = {.size = sizeof(struct mcr_parameter),
-              .type = MCR_TYPE_CHOICE,
-              .name = "thin",
-              .unit = "",
-              .choices = "no|yes",
-              .summary = "Whether a surface that transmits is a thin wall (glTF without its volume extension) and not the boundary of an interior.",
-              .fallback = {0}},
-    [ATTENUATION_COLOR] = COLOUR("attenuation_color", "Share of light that is left after `attenuation_distance` inside.", 1, 1, MCR_PARAMETER_ABOVE_MIN),
-    [ATTENUATION_DISTANCE] = {.size = sizeof(struct mcr_parameter),
-                              .type = MCR_TYPE_NUMBER,
-                              .flags = MCR_PARAMETER_ABOVE_MIN,
-                              .name = "attenuation_distance",
-                              .unit = "scene length",
-                              .summary = "The distance of `attenuation_color`.",
-                              .fallback = {1},
-                              .min = 0,
-                              .max = HUGE_VAL},
-    [PRIORITY] = {.size = sizeof(struct mcr_parameter),
-                  .type = MCR_TYPE_NUMBER,
-                  .name = "priority",
-                  .unit = "",
-                  .summary = "Where interiors overlap, that of the highest priority counts.",
-                  .fallback = {0},
-                  .min = -1e9,
-                  .max = 1e9},
-    [COMPENSATION] = {.size = sizeof(struct mcr_parameter),
-                      .type = MCR_TYPE_CHOICE,
-                      .name = "compensation",
-                      .unit = "",
-                      .choices = "none|kulla-conty",
-                      .summary = "Whether the light that meets several facets of metal is lost or comes back in a diffuse lobe.",
-                      .fallback = {1}},
-};
-
-/* What the whole surface is. Lobes that are smooth, are not there, or are everywhere, cost nothing. */
-struct surface {
-    int smooth, coat, coat_smooth, sheen, transmits, thin, compensates;
-    int diffuse; /* something is scattered that is no lobe of GGX */
-    double ior;
-};
-
 /* ---- create ---- */
-
-static int32_t refuse(const struct mcr_host *host, struct mcr_context *context, const char *text)
-{
-    host->report(host, context, MCR_REPORT_ERROR, text);
-    return MCR_E_INVALID;
-}
 
 static double attenuation_of(const double *number, int c)
 {
@@ -146,14 +61,14 @@ static int32_t create(const struct mcr_host *host, struct mcr_context *context, 
 
     *instance = NULL;
     if (volume && number[CHANNEL(THIN)] != 0)
-        return refuse(host, context, "'attenuation_color', 'attenuation_distance' and 'priority' have no effect with 'thin yes': a thin wall has no interior");
+        return mcr_refuse(host, context, "'attenuation_color', 'attenuation_distance' and 'priority' have no effect with 'thin yes': a thin wall has no interior");
     if ((volume || given[THIN]) && !(number[CHANNEL(TRANSMISSION)] > 0))
-        return refuse(host, context, "'thin', 'attenuation_color', 'attenuation_distance' and 'priority' have no effect without 'transmission'");
+        return mcr_refuse(host, context, "'thin', 'attenuation_color', 'attenuation_distance' and 'priority' have no effect without 'transmission'");
     if (given[ATTENUATION_COLOR] != given[ATTENUATION_DISTANCE])
-        return refuse(host, context, "'attenuation_color' and 'attenuation_distance' belong together: give both or neither");
+        return mcr_refuse(host, context, "'attenuation_color' and 'attenuation_distance' belong together: give both or neither");
     for (int c = 0; c < 3; c++)
         if (!(attenuation_of(number, c) < HUGE_VAL))
-            return refuse(host, context, "'attenuation_distance' is too small for this 'attenuation_color': the attenuation is infinite");
+            return mcr_refuse(host, context, "'attenuation_distance' is too small for this 'attenuation_color': the attenuation is infinite");
     s = malloc(sizeof *s);
     if (!s)
         return MCR_E_NOMEM;
@@ -188,281 +103,6 @@ static int32_t traits(const struct mcr_host *host, struct mcr_context *context, 
     return MCR_OK;
 }
 
-/* ---- lanes ---- */
-
-/*
- * Arrays of scratch, of mcr_padded(n) doubles each. ..._O and ..._W are for the outgoing direction and for the other one: LOST and GRAZING are E of the base's
- * GGX (microfacet.h), COAT and SHEEN those layers' own E.
- */
-enum {
-    COLOURS, INPUT = COLOURS + 9, ALPHA = INPUT + 7, COAT_ALPHA, RATIO, TANGENT, COSINE_O = TANGENT + 3, COSINE_W, LOST_O, LOST_W, GRAZING_O, GRAZING_W,
-    COAT_O, COAT_W, SHEEN_O, SHEEN_W, TINT, SHEEN_TINT, GREY, VALUE, FACET, CROSSED, PLAIN, REST, COATED, FIBRES, OVER, UNDER, WHITE, METAL_AGAIN, CHANCE,
-    ARRAYS = CHANCE + 4
-};
-
-static uint64_t scratch_bytes(const void *instance, uint32_t n)
-{
-    (void)instance;
-    return ARRAYS * mcr_padded(n) * sizeof(double);
-}
-
-/* The inputs, one number for each lane. */
-struct lanes {
-    uint32_t n;
-    const struct surface *surface;
-    double *room;
-    uint64_t stride;
-    const double *base[3], *tint[3], *sheen[3]; /* tint: specular_color */
-    const double *metallic, *specular, *coat, *transmission, *sheen_roughness, *t[3];
-};
-
-static double *room_of(const struct lanes *l, uint32_t array)
-{
-    return l->room + array * l->stride;
-}
-
-/* GGX's alpha, at least what a lobe can be. */
-MCR_LOOP void square_lanes(uint32_t n, const double *restrict roughness, double *restrict alpha)
-{
-    for (uint32_t i = 0; i < n; i++) {
-        double a = roughness[i] * roughness[i];
-        alpha[i] = a > MCR_GGX_LEAST ? a : MCR_GGX_LEAST;
-    }
-}
-
-MCR_LOOP void most_lanes(uint32_t n, const double *restrict r, const double *restrict g, const double *restrict b, double *restrict most)
-{
-    for (uint32_t i = 0; i < n; i++) {
-        double m = r[i] > g[i] ? r[i] : g[i];
-        most[i] = m > b[i] ? m : b[i];
-    }
-}
-
-MCR_LOOP void grey_lanes(uint32_t n, const double *restrict r, const double *restrict g, const double *restrict b, double *restrict grey)
-{
-    for (uint32_t i = 0; i < n; i++)
-        grey[i] = (r[i] + g[i] + b[i]) * (1.0 / 3);
-}
-
-/* The cosine to the normal, without its sign. */
-MCR_LOOP void cosine_lanes(uint32_t n, const double *restrict nx, const double *restrict ny, const double *restrict nz, const double *restrict x,
-                           const double *restrict y, const double *restrict z, double *restrict cosine)
-{
-    for (uint32_t i = 0; i < n; i++)
-        cosine[i] = mcr_within_unit_(fabs(nx[i] * x[i] + ny[i] * y[i] + nz[i] * z[i]));
-}
-
-/* ---- directional albedos ---- */
-
-/* Of GGX: what is lost, and the mean of (1 - o.h)^5. */
-MCR_LOOP void ggx_lanes(uint32_t n, int smooth, const double *restrict alpha, const double *restrict cosine, double *restrict lost, double *restrict grazing)
-{
-    if (smooth)
-        for (uint32_t i = 0; i < n; i++)
-            lost[i] = 0, grazing[i] = mcr_schlick_weight(cosine[i]);
-    else {
-        for (uint32_t i = 0; i < n; i++)
-            lost[i] = mcr_ggx_lost(alpha[i], cosine[i]);
-        for (uint32_t i = 0; i < n; i++)
-            grazing[i] = mcr_ggx_grazing(alpha[i], cosine[i]);
-    }
-}
-
-#define COAT_LEAST 0.04 /* ((1.5 - 1) / (1.5 + 1))^2 */
-
-/* Of the coat; on entry `e` holds what is lost. */
-MCR_LOOP void coat_lanes(uint32_t n, const double *restrict coat, const double *restrict grazing, double *restrict e)
-{
-    for (uint32_t i = 0; i < n; i++)
-        e[i] = coat[i] * ((1 - e[i]) * (COAT_LEAST + (1 - COAT_LEAST) * grazing[i]));
-}
-
-/*
- * Of white sheen, a polynomial in x = 2 sqrt(cos) - 1 (rows) and y = (2 roughness - 1.1) / 0.9, fitted to midpoint sums over 400 x 200 directions. It errs by
- * less than SHEEN_ERROR, which is added.
- */
-#define SHEEN_ERROR 2.5e-3
-#define SHEEN_LEAST 0.1
-static const double sheen_albedo[14][12] = {
-    {0.42738957, -0.037023806, -0.011840679, 0.040998604, -0.14358183, 0.19412687, 0.20446427, -0.33134095, -0.42158941, 0.51079737,
-     0.20018866, -0.23882175},
-    {-0.48390504, 0.4265285, -0.3649447, 0.27695521, -0.13527434, -0.1771005, 0.20089456, 0.35637461, -0.36070916, -0.41226155, 0.58514284,
-     -0.17712668},
-    {0.07880211, -0.21289409, 0.18065895, -0.0093059429, 2.2718776, -3.6557088, -6.1329187, 9.1240573, 10.048778, -12.52318, -5.2058498,
-     6.0599342},
-    {0.030857029, -0.074940446, 0.21272586, -0.57544717, -0.83263598, 3.3650205, 1.9879525, -7.9882471, -2.0472641, 8.9776052, -0.89274297,
-     -2.1659619},
-    {-0.043988189, 0.10710051, 0.57432305, -1.6521622, -6.9623334, 13.098504, 23.98154, -37.029219, -35.988036, 48.029858, 18.504501,
-     -22.64918},
-    {0.052881796, -0.096165083, -0.17056471, 1.14519, 1.8401675, -7.4849485, -4.8935115, 18.608511, 4.3077605, -19.324458, 0.42406112,
-     5.6224018},
-    {0.070114794, -0.17647121, -0.89685191, 2.9451839, 9.8311745, -21.144678, -33.862191, 59.209873, 48.040449, -73.106849, -23.105865,
-     32.238816},
-    {-0.12258457, 0.14114356, -0.30531589, -0.031581188, 1.7545149, 0.54787595, -8.5816918, 2.2699044, 14.871621, -7.3793525, -9.5747398,
-     6.3400306},
-    {-0.17036916, 0.27592927, 0.57573096, -2.6164251, -7.7450319, 19.344798, 24.865715, -51.701532, -33.369462, 60.685811, 14.551043,
-     -24.795147},
-    {0.25295138, -0.21649741, 0.91212685, -1.7509738, -5.8221405, 10.059464, 22.9684, -31.736383, -33.506257, 41.275456, 18.198046,
-     -20.491915},
-    {0.16734519, -0.22072956, -0.094965607, 1.1046786, 2.9646164, -8.8656499, -8.2770446, 22.205617, 10.274101, -24.724491, -3.5135945,
-     9.0752358},
-    {-0.23544861, 0.19325624, -0.8078485, 1.7645787, 4.8541165, -9.8815104, -18.801133, 29.684406, 26.594448, -36.790206, -14.171383,
-     17.464532},
-    {-0.069430635, 0.079254535, -0.058485493, -0.11408981, -0.29085149, 1.3599729, 0.2669822, -2.886294, -0.002469778, 2.8243877,
-     -0.51402811, -0.63402355},
-    {0.08893795, -0.074689338, 0.27504253, -0.60192588, -1.5204968, 3.2356647, 5.9572596, -9.6718914, -8.3642211, 11.841045, 4.4966991,
-     -5.6114426},
-};
-
-MCR_INLINE double sheen_of(double cosine, double roughness)
-{
-    double r = roughness > SHEEN_LEAST ? roughness : SHEEN_LEAST, x = 2 * sqrt(cosine) - 1, y = (r - 0.55) * (1 / 0.45);
-    double p = mcr_row12_(sheen_albedo[13], y);
-
-    p = p * x + mcr_row12_(sheen_albedo[12], y);
-    p = p * x + mcr_row12_(sheen_albedo[11], y);
-    p = p * x + mcr_row12_(sheen_albedo[10], y);
-    p = p * x + mcr_row12_(sheen_albedo[9], y);
-    p = p * x + mcr_row12_(sheen_albedo[8], y);
-    p = p * x + mcr_row12_(sheen_albedo[7], y);
-    p = p * x + mcr_row12_(sheen_albedo[6], y);
-    p = p * x + mcr_row12_(sheen_albedo[5], y);
-    p = p * x + mcr_row12_(sheen_albedo[4], y);
-    p = p * x + mcr_row12_(sheen_albedo[3], y);
-    p = p * x + mcr_row12_(sheen_albedo[2], y);
-    p = p * x + mcr_row12_(sheen_albedo[1], y);
-    p = p * x + mcr_row12_(sheen_albedo[0], y);
-    p = (p > 0 ? p : 0) + SHEEN_ERROR;
-    return p;
-}
-
-MCR_LOOP void sheen_lanes(uint32_t n, const double *restrict roughness, const double *restrict cosine, double *restrict e)
-{
-    for (uint32_t i = 0; i < n; i++)
-        e[i] = sheen_of(cosine[i], roughness[i]);
-}
-
-/* All of a direction's albedos: arrays COSINE, LOST, GRAZING, COAT and SHEEN, those of o being first. */
-static void albedos(const struct lanes *l, const struct mcr_points *at, const double *x, const double *y, const double *z, int toward)
-{
-    const struct surface *s = l->surface;
-    double *cosine = room_of(l, COSINE_O + (uint32_t)toward), *coat = room_of(l, COAT_O + (uint32_t)toward);
-    double *lost = room_of(l, LOST_O + (uint32_t)toward), *grazing = room_of(l, GRAZING_O + (uint32_t)toward);
-
-    cosine_lanes(l->n, at->nx, at->ny, at->nz, x, y, z, cosine);
-    if (s->coat) {
-        ggx_lanes(l->n, s->coat_smooth, room_of(l, COAT_ALPHA), cosine, coat, grazing);
-        coat_lanes(l->n, l->coat, grazing, coat);
-    } else
-        mcr_fill_lanes(l->n, 0, coat);
-    if (s->sheen)
-        sheen_lanes(l->n, l->sheen_roughness, cosine, room_of(l, SHEEN_O + (uint32_t)toward));
-    else
-        mcr_fill_lanes(l->n, 0, room_of(l, SHEEN_O + (uint32_t)toward));
-    if (s->diffuse || !toward)
-        ggx_lanes(l->n, s->smooth, room_of(l, ALPHA), cosine, lost, grazing);
-}
-
-/* The inputs, and the albedos of o. */
-static struct lanes lanes_of(const struct surface *s, const struct mcr_points *at, const struct mcr_inputs *inputs, double *room)
-{
-    struct lanes l = {.n = at->n, .surface = s, .room = room, .stride = mcr_padded(at->n)};
-
-    for (uint32_t c = 0; c < 3; c++) {
-        l.base[c] = mcr_input_lanes(inputs, CHANNEL(BASE) + c, l.n, room_of(&l, COLOURS + c));
-        l.tint[c] = mcr_input_lanes(inputs, CHANNEL(SPECULAR_COLOR) + c, l.n, room_of(&l, COLOURS + 3 + c));
-        l.sheen[c] = mcr_input_lanes(inputs, CHANNEL(SHEEN_COLOR) + c, l.n, room_of(&l, COLOURS + 6 + c));
-    }
-    l.metallic = mcr_input_lanes(inputs, CHANNEL(METALLIC), l.n, room_of(&l, INPUT));
-    l.specular = mcr_input_lanes(inputs, CHANNEL(SPECULAR), l.n, room_of(&l, INPUT + 1));
-    l.coat = mcr_input_lanes(inputs, CHANNEL(CLEARCOAT), l.n, room_of(&l, INPUT + 2));
-    l.transmission = mcr_input_lanes(inputs, CHANNEL(TRANSMISSION), l.n, room_of(&l, INPUT + 3));
-    l.sheen_roughness = mcr_input_lanes(inputs, CHANNEL(SHEEN_ROUGHNESS), l.n, room_of(&l, INPUT + 4));
-    square_lanes(l.n, mcr_input_lanes(inputs, CHANNEL(ROUGHNESS), l.n, room_of(&l, INPUT + 5)), room_of(&l, ALPHA));
-    square_lanes(l.n, mcr_input_lanes(inputs, CHANNEL(CLEARCOAT_ROUGHNESS), l.n, room_of(&l, INPUT + 6)), room_of(&l, COAT_ALPHA));
-    most_lanes(l.n, l.tint[0], l.tint[1], l.tint[2], room_of(&l, TINT));
-    most_lanes(l.n, l.sheen[0], l.sheen[1], l.sheen[2], room_of(&l, SHEEN_TINT));
-    grey_lanes(l.n, l.base[0], l.base[1], l.base[2], room_of(&l, GREY));
-    if (s->transmits)
-        mcr_ratio_lanes(at, mcr_input_lanes(inputs, CHANNEL(IOR), l.n, room_of(&l, FACET)), s->thin, room_of(&l, RATIO));
-    mcr_tangent_lanes(at, room_of(&l, TANGENT), l.t);
-    albedos(&l, at, at->ox, at->oy, at->oz, 0);
-    return l;
-}
-
-/* ---- reflectances ---- */
-
-/* At normal incidence, of the index n. */
-MCR_INLINE double least_of(double n)
-{
-    double root = (n - 1) / (n + 1);
-    return root * root;
-}
-
-/* Plastic's, with (1 - cos)^5, or a mean of it, as weight. */
-MCR_INLINE double plastic_of(double least, double tint, double specular, double weight)
-{
-    double r = least * tint;
-
-    r = r < 1 ? r : 1;
-    return specular * (r + (1 - r) * weight);
-}
-
-/* Glass's share of Fresnel: `plain`, and by how much it is to be moved where the tint is not 1: `rest`, -1 where all is reflected. */
-struct glass {
-    double plain, rest, q;
-};
-
-MCR_INLINE struct glass glass_of(double c, double ratio)
-{
-    double least = least_of(ratio), rise;
-    struct glass g;
-
-    g.plain = mcr_fresnel_dielectric(c, ratio, &g.q);
-    rise = (g.plain - least) / (1 - least);
-    g.rest = g.plain < 1 ? 1 - (rise > 0 ? rise : 0) : -1;
-    return g;
-}
-
-/* One interface's reflectance. */
-MCR_INLINE double interface_of(double plain, double rest, double ratio, double tint, double specular)
-{
-    double least = least_of(ratio), r = least * tint, f;
-
-    r = r < 1 ? r : 1;
-    f = plain + (r - least) * rest;
-    f = specular * (f > 0 ? f : 0);
-    f = f < 1 ? f : 1;
-    return rest < 0 ? 1 : f;
-}
-
-/* What a wall of two of them reflects. */
-MCR_INLINE double wall_of(double f) { return 2 * f / (1 + f); }
-
-/* Of the base at a facet, in grey: what is reflected, and what passes. For choosing between both. */
-struct shares {
-    double reflected, passed;
-};
-
-MCR_INLINE struct shares shares_of(double cosine, struct glass g, double ratio, double least, double tint, double specular, double metallic,
-                                   double transmission, double grey, int thin)
-{
-    double weight = mcr_schlick_weight(cosine), f = interface_of(g.plain, g.rest, ratio, tint, specular), all = thin ? wall_of(f) : f;
-    struct shares s;
-
-    s.reflected = metallic * (grey + (1 - grey) * weight) +
-                  (1 - metallic) * (transmission * all + (1 - transmission) * plastic_of(least, tint, specular, weight));
-    s.passed = (1 - metallic) * transmission * (1 - all) * grey;
-    return s;
-}
-
-/* The chance that a facet reflects. */
-MCR_INLINE double reflects_of(struct shares s)
-{
-    double sum = s.reflected + s.passed;
-    return sum > 0 ? s.reflected / sum : 1;
-}
-
 /* ---- evaluate ---- */
 
 /* GGX of the base without its shares; the cosine at the facet, whether w is on the other side. */
@@ -474,12 +114,10 @@ MCR_LOOP void facet_lanes(const struct mcr_points *at, const double *const t[3],
     for (uint32_t i = 0; i < at->n; i++) {
         struct mcr_frame f = mcr_frame(mcr_vector(nx[i], ny[i], nz[i]), mcr_vector(tx[i], ty[i], tz[i]));
         struct mcr_vector o = mcr_to_frame(f, mcr_vector(ox[i], oy[i], oz[i])), w = mcr_to_frame(f, mcr_vector(x[i], y[i], z[i]));
-        struct mcr_ggx reflected = mcr_ggx_reflect(alpha[i], alpha[i], o, mcr_vector(w.x, w.y, fabs(w.z)));
-        struct mcr_ggx refracted = mcr_ggx_transmit(alpha[i], alpha[i], o, w, ratio[i]);
-        int bends = !thin & (w.z < 0);
+        struct mcr_ggx g = mcr_ggx_interface(alpha[i], ratio[i], thin, o, w);
 
-        value[i] = bends ? refracted.value : reflected.value;
-        cosine[i] = bends ? refracted.cosine : reflected.cosine;
+        value[i] = g.value;
+        cosine[i] = g.cosine;
     }
 }
 
@@ -499,62 +137,12 @@ MCR_LOOP void reflect_lanes(const struct mcr_points *at, const double *const t[3
     }
 }
 
-MCR_LOOP void coated_lanes(uint32_t n, const double *restrict coat, const double *restrict cosine, double *restrict value)
-{
-    for (uint32_t i = 0; i < n; i++)
-        value[i] *= coat[i] * mcr_fresnel_schlick(cosine[i], COAT_LEAST);
-}
-
 MCR_LOOP void glass_lanes(uint32_t n, const double *restrict cosine, const double *restrict ratio, double *restrict plain, double *restrict rest)
 {
     for (uint32_t i = 0; i < n; i++) {
         struct glass g = glass_of(cosine[i], ratio[i]);
         plain[i] = g.plain;
         rest[i] = g.rest;
-    }
-}
-
-/*
- * White sheen, f cos. D = (2 + 1/alpha) sin^(1/alpha) / (2 pi) of the half vector's angle to the normal; its sine is that of the part across the normal.
- */
-MCR_LOOP void fibre_lanes(const struct mcr_points *at, const double *restrict roughness, const double *restrict x, const double *restrict y,
-                          const double *restrict z, const double *restrict above, const double *restrict below, double *restrict value)
-{
-    const double *nx = at->nx, *ny = at->ny, *nz = at->nz, *ox = at->ox, *oy = at->oy, *oz = at->oz;
-
-    for (uint32_t i = 0; i < at->n; i++) {
-        struct mcr_vector n = mcr_vector(nx[i], ny[i], nz[i]), h = mcr_vector(ox[i] + x[i], oy[i] + y[i], oz[i] + z[i]);
-        double o = mcr_dot(n, mcr_vector(ox[i], oy[i], oz[i])), w = mcr_dot(n, mcr_vector(x[i], y[i], z[i])), up = o + w;
-        double length2 = mcr_dot(h, h), sine2 = 1 - up * up / (length2 > 0 ? length2 : 1), r = roughness[i] > SHEEN_LEAST ? roughness[i] : SHEEN_LEAST;
-        double inverse = 1 / (r * r), most = above[i] > below[i] ? above[i] : below[i], d, shadow = o + w - o * w;
-        int seen = (o > MCR_GGX_HORIZON) & (w > MCR_GGX_HORIZON);
-
-        sine2 = sine2 > 1e-300 ? sine2 : 1e-300;
-        d = (2 + inverse) * mcr_exp(0.5 * inverse * mcr_log(sine2)) * (0.5 * MCR_PER_PI);
-        d = d * w / (4 * (seen ? shadow : 1) * (most > 1 ? most : 1));
-        value[i] = seen ? d : 0;
-    }
-}
-
-/*
- * What the layers let through, and where: `over` is what is under the coat, `under` what is under sheen, too; 0 where the shading normal and the geometric
- * one do not agree on w's side. `crossed`: 1 on the other side.
- */
-MCR_LOOP void cover_lanes(const struct mcr_points *at, const double *restrict x, const double *restrict y, const double *restrict z,
-                          const double *restrict coat_o, const double *restrict coat_w, const double *restrict sheen_o, const double *restrict sheen_w,
-                          const double *restrict tint, double *restrict over, double *restrict under, double *restrict crossed)
-{
-    const double *nx = at->nx, *ny = at->ny, *nz = at->nz, *gx = at->gx, *gy = at->gy, *gz = at->gz, *ox = at->ox, *oy = at->oy, *oz = at->oz;
-
-    for (uint32_t i = 0; i < at->n; i++) {
-        double o = nx[i] * ox[i] + ny[i] * oy[i] + nz[i] * oz[i], w = nx[i] * x[i] + ny[i] * y[i] + nz[i] * z[i];
-        double side = gx[i] * x[i] + gy[i] * y[i] + gz[i] * z[i], sheen = sheen_o[i] > sheen_w[i] ? sheen_o[i] : sheen_w[i];
-        double coat = coat_o[i] > coat_w[i] ? coat_o[i] : coat_w[i];
-        int right = (o > MCR_GGX_HORIZON) & (fabs(w) > MCR_GGX_HORIZON) & (w < 0 ? side < 0 : side > 0);
-
-        over[i] = right ? 1 - coat : 0;
-        under[i] = over[i] * (1 - tint[i] * (sheen < 1 ? sheen : 1));
-        crossed[i] = w < 0 ? 1 : 0;
     }
 }
 
@@ -616,15 +204,6 @@ MCR_LOOP void spread_lanes(const struct lanes *l, const double *restrict alpha, 
         double kept = 1 - mcr_ggx_mean_lost(alpha[i]), f = (20 * base[i] + 1) * (1.0 / 21), several = f * f * kept / (1 - f * (1 - kept));
         double sum = (1 - metallic[i]) * (1 - transmission[i]) * base[i] * white[i] + metallic[i] * several * again[i];
         out[i] += crossed[i] != 0 ? 0 : sum;
-    }
-}
-
-MCR_LOOP void layers_lanes(uint32_t n, const double *restrict over, const double *restrict under, const double *restrict crossed, const double *restrict coated,
-                           const double *restrict fibres, const double *restrict sheen, double *restrict out)
-{
-    for (uint32_t i = 0; i < n; i++) {
-        double f = out[i] * under[i] + fibres[i] * sheen[i] * over[i], all = f + (over[i] > 0 && crossed[i] == 0 ? coated[i] : 0);
-        out[i] = all;
     }
 }
 
@@ -745,12 +324,9 @@ MCR_LOOP void density_lanes(const struct lanes *l, const struct mcr_points *at, 
     for (uint32_t i = 0; i < at->n; i++) {
         struct mcr_frame f = mcr_frame(mcr_vector(nx[i], ny[i], nz[i]), mcr_vector(tx[i], ty[i], tz[i]));
         struct mcr_vector o = mcr_to_frame(f, mcr_vector(ox[i], oy[i], oz[i])), w = mcr_to_frame(f, mcr_vector(x[i], y[i], z[i]));
-        struct mcr_vector up = mcr_vector(w.x, w.y, fabs(w.z));
-        struct mcr_ggx coat = mcr_ggx_reflect(coat_alpha[i], coat_alpha[i], o, w), reflected = mcr_ggx_reflect(alpha[i], alpha[i], o, up);
-        struct mcr_ggx refracted = mcr_ggx_transmit(alpha[i], alpha[i], o, w, ratio[i]);
-        int bends = !thin & (w.z < 0), seen = (o.z > MCR_GGX_HORIZON) & (fabs(w.z) > MCR_GGX_HORIZON);
-        double base = bends ? refracted.density : reflected.density, cosine = bends ? refracted.cosine : reflected.cosine;
-        double chance = reflects_at(cosine, ratio[i], least, tint[i], specular[i], metallic[i], transmission[i], grey[i], thin), above;
+        struct mcr_ggx coat = mcr_ggx_reflect(coat_alpha[i], coat_alpha[i], o, w), facet = mcr_ggx_interface(alpha[i], ratio[i], thin, o, w);
+        int seen = (o.z > MCR_GGX_HORIZON) & (fabs(w.z) > MCR_GGX_HORIZON);
+        double base = facet.density, chance = reflects_at(facet.cosine, ratio[i], least, tint[i], specular[i], metallic[i], transmission[i], grey[i], thin), above;
 
         base *= (second[i] - first[i]) * (w.z < 0 ? 1 - chance : chance);
         above = first[i] * coat.density + (third[i] - second[i]) * (0.5 * MCR_PER_PI) + (1 - third[i]) * (w.z * MCR_PER_PI);
@@ -774,7 +350,7 @@ MCR_LOOP void draw_lanes(const struct lanes *l, const struct mcr_points *at, con
         struct mcr_vector o = mcr_to_frame(f, mcr_vector(ox[i], oy[i], oz[i])), m, d, p, w;
         int visible = o.z > MCR_GGX_HORIZON, coated = choice[i] < first[i], facet = choice[i] < second[i], fibre = choice[i] < third[i], passes;
         double px, py, rest = mcr_disk_from_square(u[i], v[i], &px, &py), a = coated ? coat_alpha[i] : alpha[i], length2, inverse, c, chance, left;
-        double bent = mcr_ggx_index(ratio[i]), root2, span = second[i] - first[i], wide = sqrt(1 + rest), above;
+        double span = second[i] - first[i], wide = sqrt(1 + rest), above;
 
         o.z = visible ? o.z : 1;
         m = mcr_ggx_visible(a, a, o, u[i], v[i]);
@@ -788,11 +364,7 @@ MCR_LOOP void draw_lanes(const struct lanes *l, const struct mcr_points *at, con
         chance = reflects_at(c, ratio[i], least, tint[i], specular[i], metallic[i], transmission[i], grey[i], thin);
         left = choice[i] - first[i];
         passes = facet & !coated & (left >= chance * span);
-        root2 = (bent - 1) * (bent + 1) + c * c;
-        p = mcr_refracted(o, m, c, bent, sqrt(root2 > 0 ? root2 : 0));
-        p.x = thin ? d.x : p.x;
-        p.y = thin ? d.y : p.y;
-        p.z = thin ? -d.z : p.z;
+        p = mcr_ggx_passed(o, m, c, d, ratio[i], thin);
         d.x = passes ? p.x : d.x;
         d.y = passes ? p.y : d.y;
         d.z = passes ? p.z : d.z;
@@ -810,17 +382,6 @@ MCR_LOOP void draw_lanes(const struct lanes *l, const struct mcr_points *at, con
     }
 }
 
-/* Where rounding leaves no density, nothing was drawn. */
-MCR_LOOP void drop_lanes(uint32_t n, const double *restrict density, double *restrict x, double *restrict y, double *restrict z)
-{
-    for (uint32_t i = 0; i < n; i++) {
-        int drawn = density[i] > 0;
-        x[i] = drawn ? x[i] : 0;
-        y[i] = drawn ? y[i] : 0;
-        z[i] = drawn ? z[i] : 0;
-    }
-}
-
 static int32_t draw(const struct mcr_host *host, struct mcr_context *context, const void *instance, const struct mcr_inputs *inputs,
                     const struct mcr_points *at, const double *const *number, const struct mcr_directions *out, double *density)
 {
@@ -830,7 +391,7 @@ static int32_t draw(const struct mcr_host *host, struct mcr_context *context, co
     draw_lanes(&l, at, number, out->x, out->y, out->z);
     density = density ? density : room_of(&l, VALUE);
     density_lanes(&l, at, out->x, out->y, out->z, density);
-    drop_lanes(l.n, density, out->x, out->y, out->z);
+    mcr_drop_lanes(l.n, density, out->x, out->y, out->z);
     return MCR_OK;
 }
 

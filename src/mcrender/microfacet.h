@@ -170,6 +170,30 @@ MCR_INLINE double mcr_ggx_index(double n)
     return 1 + bent;
 }
 
+/* Reflection above the horizon; below it refraction, or of a thin wall, which passes light as it reflects it, the mirrored direction's image. */
+MCR_INLINE struct mcr_ggx mcr_ggx_interface(double alpha, double n, int thin, struct mcr_vector o, struct mcr_vector w)
+{
+    struct mcr_ggx reflected = mcr_ggx_reflect(alpha, alpha, o, mcr_vector(w.x, w.y, fabs(w.z))), refracted = mcr_ggx_transmit(alpha, alpha, o, w, n), g;
+    int bends = !thin & (w.z < 0);
+
+    g.value = bends ? refracted.value : reflected.value;
+    g.density = bends ? refracted.density : reflected.density;
+    g.cosine = bends ? refracted.cosine : reflected.cosine;
+    return g;
+}
+
+/* Where the facet of unit normal m, c = o.m, then sends what it does not reflect to `mirrored`. */
+MCR_INLINE struct mcr_vector mcr_ggx_passed(struct mcr_vector o, struct mcr_vector m, double c, struct mcr_vector mirrored, double n, int thin)
+{
+    double bent = mcr_ggx_index(n), root2 = (bent - 1) * (bent + 1) + c * c;
+    struct mcr_vector p = mcr_refracted(o, m, c, bent, sqrt(root2 > 0 ? root2 : 0));
+
+    p.x = thin ? mirrored.x : p.x;
+    p.y = thin ? mirrored.y : p.y;
+    p.z = thin ? -mirrored.z : p.z;
+    return p;
+}
+
 /*
  * A normal that o sees (o.z > 0), not unit. Squeezed by ax and ay, the surface's normals are those of a hemisphere and o becomes a unit vector s. A point
  * of the spherical cap z > -s.z, uniform in area, plus s is a visible normal of the hemisphere; stretched back, one of the surface. The cap's point at a

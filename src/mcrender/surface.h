@@ -23,6 +23,13 @@ extern "C" {
 
 #define MCR_PER_PI 0.31830988618379067 /* 1 / pi */
 
+/* What `create` returns for settings that cannot work together, with the reason. */
+MCR_INLINE int32_t mcr_refuse(const struct mcr_host *host, struct mcr_context *context, const char *text)
+{
+    host->report(host, context, MCR_REPORT_ERROR, text);
+    return MCR_E_INVALID;
+}
+
 /* Doubles to one array of scratch over n lanes: a multiple of 8 keeps every array aligned and padded. */
 MCR_INLINE uint64_t mcr_padded(uint32_t n) { return ((uint64_t)n + 7) / 8 * 8; }
 
@@ -78,6 +85,17 @@ MCR_LOOP void mcr_fill_lanes(uint32_t n, double value, double *restrict out)
 {
     for (uint32_t i = 0; i < n; i++)
         out[i] = value;
+}
+
+/* Where rounding leaves no density, as close to index 1, nothing was drawn. */
+MCR_LOOP void mcr_drop_lanes(uint32_t n, const double *restrict density, double *restrict x, double *restrict y, double *restrict z)
+{
+    for (uint32_t i = 0; i < n; i++) {
+        int drawn = density[i] > 0;
+        x[i] = drawn ? x[i] : 0;
+        y[i] = drawn ? y[i] : 0;
+        z[i] = drawn ? z[i] : 0;
+    }
 }
 
 /* Channel c over n lanes: the host's array where it varies, else `room`, filled with its value. */

@@ -1,7 +1,7 @@
 #!/bin/bash
 # SPDX-License-Identifier: Apache-2.0
 # The edges between folders: a folder includes from folders to its left and from the public headers; C++ only below src/modules/;
-# a plugin includes nothing but the public headers and those of C.
+# a plugin includes nothing but the public headers, those of C and its own, plugins/WORD_*.h.
 . "$srcdir/tests/tap.sh"
 
 order="base language plugin image scene accel core film metrics study cli"
@@ -59,11 +59,12 @@ c_headers='assert complex ctype errno fenv float inttypes iso646 limits locale m
     stdio stdlib stdnoreturn string tgmath threads time uchar wchar wctype'
 plugin_includes()
 {
-    local line what
+    local line what word
     while IFS= read -r line; do
-        what=${line#*:}
+        what=${line#*:} word=${line%%:*}
+        word=${word##*/} word=${word%.[ch]}
         case $what in
-        '<mcrender/'*) ;;
+        '<mcrender/'* | \""${word%%_*}"_*.h\") ;;
         '<'*.h'>') what=${what#<}; case " ${c_headers//$'\n'/ } " in *" ${what%.h>} "*) ;; *) echo "$line" ;; esac ;;
         *) echo "$line" ;;
         esac
@@ -85,7 +86,8 @@ printf '#include "cli/main.h"\n' >"$bad/src/modules/module.cc"
 printf '#include "base/arena.h"\n#include <mcrender/plugin.h>\n#include <math.h>\n' >"$bad/src/core/good.c"
 printf '#include "base/arena.h"\n' >"$bad/plugins/private.c"
 printf '#include <unistd.h>\n' >"$bad/plugins/system.c"
-printf '#include <mcrender/plugin.h>\n#include <math.h>\n' >"$bad/plugins/good.c"
+printf '#include "foreign_parts.h"\n' >"$bad/plugins/other.c"
+printf '#include "good_parts.h"\n#include <mcrender/plugin.h>\n#include <math.h>\n' >"$bad/plugins/good.c"
 : >"$bad/src/core/plus.cc"
 found=$(folder_edges "$bad")
 for file in base/upward.c core/bare.c core/bracket.c mcrender/private.h modules/module.cc; do
@@ -95,6 +97,7 @@ refute "a good file is not blamed" grep -q good <<<"$found"
 check "C++ in src/core is seen" test "$(cxx_elsewhere "$bad")" = src/core/plus.cc
 found=$(plugin_includes "$bad")
 check "a plugin's private header is seen" grep -q private.c <<<"$found"
+check "another plugin's header is seen" grep -q other.c <<<"$found"
 check "a plugin's system header is seen" grep -q system.c <<<"$found"
 refute "a good plugin is not blamed" grep -q good.c <<<"$found"
 finish
