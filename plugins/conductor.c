@@ -259,13 +259,10 @@ static void index_lanes(uint32_t n, const struct mcr_inputs *inputs, uint32_t c,
 /* The mean of F over the hemisphere, weighted by the cosine: of Schlick's formula (20 r + 1) / 21, else by Gauss and Legendre's rule of 8 points. */
 static void mean_fresnel_lanes(uint32_t n, const double *eta, const double *k, double *restrict mean)
 {
-    static const double node[8] = {0.01985507175123191, 0.1016667612931866, 0.2372337950418355, 0.4082826787521751, 0.5917173212478248, 0.7627662049581645, 0.8983332387068134, 0.9801449282487681};
-    static const double weight[8] = {0.002009899851317613, 0.02260875954590313, 0.07442181813145635, 0.1480775066176912, 0.2146062767606707, 0.2392848277464308, 0.1997722749074713, 0.09921863643905911};
-
     for (uint32_t i = 0; i < n; i++) {
         double sum = 0, e = eta[i], absorbs = k[i];
         for (uint32_t j = 0; j < 8; j++)
-            sum += weight[j] * mcr_fresnel_conductor(node[j], e, absorbs);
+            sum += mcr_mean_weight_[j] * mcr_fresnel_conductor(mcr_mean_node_[j], e, absorbs);
         mean[i] = absorbs < 0 ? (20 * e + 1) / 21 : sum;
     }
 }

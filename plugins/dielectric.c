@@ -4,7 +4,7 @@
  * microfacets (Walter et al., "Microfacet models for refraction through rough surfaces", 2007). Radiance that enters an index n is n^2 times what it was.
  * The interior behind the front side absorbs as Beer and Lambert have it; where it overlaps others, priority decides.
  *
- * Light that meets more than one microfacet is lost, as with a conductor.
+ * Light that meets more than one microfacet is lost, as with a conductor. `compensation` gives it back in two diffuse lobes, one above and one below: glass.h.
  *
  * A thin wall has both interfaces in one and light passes straight on. Of the unpolarised reflectance R of one of them and the share t that crosses the
  * wall's inside, all internal reflections together reflect R + (1 - R)^2 t^2 R / (1 - R^2 t^2) and pass (1 - R)^2 t / (1 - R^2 t^2).
@@ -12,11 +12,11 @@
  *
  * With roughness 0 the surface is smooth. A texture of roughness that is not 0 everywhere makes lobes, of 1e-7 rad where it is 0.
  */
+#include <mcrender/glass.h>
 #include <mcrender/math.h>
-#include <mcrender/microfacet.h>
 
 /* Parameters, in the order of the table. */
-enum { INDEX, ROUGHNESS, THIN, TRANSMITTANCE, DEPTH, ATTENUATION, PRIORITY, PARAMETERS };
+enum { INDEX, ROUGHNESS, THIN, TRANSMITTANCE, DEPTH, ATTENUATION, PRIORITY, COMPENSATION, PARAMETERS };
 #define CHANNEL(parameter) (3 * (parameter))
 
 static const struct mcr_parameter parameters[PARAMETERS] = {
@@ -78,6 +78,13 @@ static const struct mcr_parameter parameters[PARAMETERS] = {
                   .fallback = {0},
                   .min = -1e9,
                   .max = 1e9},
+    [COMPENSATION] = {.size = sizeof(struct mcr_parameter),
+                      .type = MCR_TYPE_CHOICE,
+                      .name = "compensation",
+                      .unit = "",
+                      .choices = "none|kulla-conty",
+                      .summary = "Whether the light that meets several facets is lost or comes back in diffuse lobes on both sides.",
+                      .fallback = {0}},
 };
 
 /* Light falls by exp(-attenuation distance). */
@@ -125,11 +132,13 @@ static int32_t traits(const struct mcr_host *host, struct mcr_context *context, 
 
 /* Arrays of scratch, of mcr_padded(n) doubles each. TANGENT is 3. */
 enum { RATIO, WALL, INDEX_LANES, ALPHA, THIN_LANES, TANGENT, VALUES = TANGENT + 3, COSINES, CROSSED, ARRAYS };
+/* Further ones with `compensation`. */
+enum { BEYOND = ARRAYS, COSINE_O, COSINE_W, SIDE, LOST_O, LOST_W, MEAN, MEAN_BEYOND, UP, DOWN, SHARE, CHOICE, ALL_ARRAYS };
 
 static uint64_t scratch_bytes(const void *instance, uint32_t n)
 {
     (void)instance;
-    return ARRAYS * mcr_padded(n) * sizeof(double);
+    return ALL_ARRAYS * mcr_padded(n) * sizeof(double);
 }
 
 /* ---- the interface ---- */
@@ -151,6 +160,11 @@ static void at_least_lanes(uint32_t n, const double *alpha, double *restrict out
         out[i] = alpha[i] > MCR_GGX_LEAST ? alpha[i] : MCR_GGX_LEAST;
 }
 
+static int walls(const struct mcr_inputs *inputs)
+{
+    return inputs->stride[CHANNEL(THIN)] || inputs->channel[CHANNEL(THIN)][0] != 0;
+}
+
 static struct interface interface_lanes(const struct mcr_points *at, const struct mcr_inputs *inputs, double *room)
 {
     const uint64_t stride = mcr_padded(at->n);
@@ -158,7 +172,7 @@ static struct interface interface_lanes(const struct mcr_points *at, const struc
     struct interface s = {room + RATIO * stride, mcr_input_lanes(inputs, CHANNEL(THIN), at->n, room + THIN_LANES * stride), room + ALPHA * stride};
 
     mcr_ratio_lanes(at, index, 0, room + RATIO * stride);
-    if (inputs->stride[CHANNEL(THIN)] || inputs->channel[CHANNEL(THIN)][0] != 0) {
+    if (walls(inputs)) {
         mcr_ratio_lanes(at, index, 1, room + WALL * stride);
         choose_lanes(at->n, s.thin, room + WALL * stride, room + RATIO * stride);
     }
@@ -248,6 +262,117 @@ static int32_t delta(const struct mcr_host *host, struct mcr_context *context, c
     return MCR_OK;
 }
 
+/* ---- light that meets several facets ---- */
+
+static int compensates(const struct mcr_inputs *inputs)
+{
+    return inputs->stride[CHANNEL(COMPENSATION)] || inputs->channel[CHANNEL(COMPENSATION)][0] != 0;
+}
+
+/* The index on this side over that on the other, and the cosine to the normal. */
+MCR_LOOP void beyond_lanes(const struct mcr_points *at, const double *restrict ratio, double *restrict beyond, double *restrict cosine)
+{
+    const double *nx = at->nx, *ny = at->ny, *nz = at->nz, *ox = at->ox, *oy = at->oy, *oz = at->oz;
+
+    for (uint32_t i = 0; i < at->n; i++) {
+        beyond[i] = 1 / ratio[i];
+        cosine[i] = mcr_within_unit_(mcr_dot(mcr_vector(nx[i], ny[i], nz[i]), mcr_vector(ox[i], oy[i], oz[i])));
+    }
+}
+
+/* The same for w, by the index of the side that it is on; the side: 0 where the normals do not agree on it. */
+MCR_LOOP void toward_lanes(const struct mcr_points *at, const double *restrict x, const double *restrict y, const double *restrict z, const double *restrict ratio,
+                           double *restrict beyond, double *restrict cosine, double *restrict side)
+{
+    const double *nx = at->nx, *ny = at->ny, *nz = at->nz, *gx = at->gx, *gy = at->gy, *gz = at->gz, *ox = at->ox, *oy = at->oy, *oz = at->oz;
+
+    for (uint32_t i = 0; i < at->n; i++) {
+        struct mcr_vector n = mcr_vector(nx[i], ny[i], nz[i]);
+        double o = mcr_dot(n, mcr_vector(ox[i], oy[i], oz[i])), w = mcr_dot(n, mcr_vector(x[i], y[i], z[i])), g = gx[i] * x[i] + gy[i] * y[i] + gz[i] * z[i];
+        int right = (o > MCR_GGX_HORIZON) & (fabs(w) > MCR_GGX_HORIZON) & (w < 0 ? g < 0 : g > 0);
+
+        beyond[i] = w < 0 ? beyond[i] : ratio[i];
+        cosine[i] = mcr_within_unit_(fabs(w));
+        side[i] = right ? (w < 0 ? -1 : 1) : 0;
+    }
+}
+
+/* Walls lose what a mirror loses. */
+MCR_LOOP void wall_lost_lanes(uint32_t n, const double *restrict alpha, const double *restrict thin, const double *restrict cosine, double *restrict lost)
+{
+    for (uint32_t i = 0; i < n; i++) {
+        double wall = mcr_ggx_lost(alpha[i], cosine[i]);
+        lost[i] = thin[i] != 0 ? wall : lost[i];
+    }
+}
+
+/* Their lobes for light of which `inside` crosses them. */
+MCR_LOOP void wall_lobe_lanes(uint32_t n, const struct interface *s, const double *restrict inside, uint32_t stride, double *restrict up, double *restrict down)
+{
+    const double *ratio = s->ratio, *thin = s->thin, *alpha = s->alpha;
+
+    for (uint32_t i = 0; i < n; i++) {
+        double reflected = 0, passed = 0, above, below;
+
+        for (int k = 0; k < 8; k++) {
+            struct shares f = shares_of(mcr_mean_node_[k], ratio[i], 1, inside[i * stride]);
+            reflected += mcr_mean_weight_[k] * f.reflected;
+            passed += mcr_mean_weight_[k] * f.passed;
+        }
+        mcr_glass_wall(alpha[i], reflected, passed, &above, &below);
+        up[i] = thin[i] != 0 ? above : up[i];
+        down[i] = thin[i] != 0 ? below : down[i];
+    }
+}
+
+MCR_LOOP void wall_share_lanes(uint32_t n, const double *restrict thin, const double *restrict up, const double *restrict down, double *restrict share)
+{
+    for (uint32_t i = 0; i < n; i++) {
+        double part = down[i] / (up[i] + down[i] > 0 ? up[i] + down[i] : 1);
+        share[i] = thin[i] != 0 ? part : share[i];
+    }
+}
+
+/* What o loses, 0 where nobody asks for it, and the lobes' factors and shares; of walls those of clear ones. */
+static void lost(const struct mcr_points *at, const struct interface *s, const struct mcr_inputs *inputs, double *room)
+{
+    static const double clear[1] = {1};
+    const uint64_t stride = mcr_padded(at->n);
+    double *beyond = room + BEYOND * stride, *cosine = room + COSINE_O * stride, *lost = room + LOST_O * stride, *mean = room + MEAN * stride;
+    double *up = room + UP * stride, *down = room + DOWN * stride, *share = room + SHARE * stride;
+
+    beyond_lanes(at, s->ratio, beyond, cosine);
+    mcr_glass_lost_lanes(at->n, s->alpha, s->ratio, cosine, lost, mean);
+    mcr_glass_lost_lanes(at->n, s->alpha, beyond, NULL, NULL, room + MEAN_BEYOND * stride);
+    mcr_glass_lobe_lanes(at->n, s->ratio, mean, room + MEAN_BEYOND * stride, up, down, share);
+    if (walls(inputs)) {
+        wall_lost_lanes(at->n, s->alpha, s->thin, cosine, lost);
+        wall_lobe_lanes(at->n, s, clear, 0, up, down);
+        wall_share_lanes(at->n, s->thin, up, down, share);
+    }
+    mcr_multiply_lanes(at->n, inputs->channel[CHANNEL(COMPENSATION)], inputs->stride[CHANNEL(COMPENSATION)], lost);
+}
+
+/* Adds the lobes toward w. */
+static void lobes(const struct mcr_points *at, const struct interface *s, const struct mcr_inputs *inputs, const struct mcr_directions *toward, double *room,
+                  double *const channel[3])
+{
+    const uint64_t stride = mcr_padded(at->n);
+    double *beyond = room + BEYOND * stride, *cosine = room + COSINE_W * stride, *side = room + SIDE * stride, *other = room + LOST_W * stride;
+    double *up = room + UP * stride, *down = room + DOWN * stride;
+
+    lost(at, s, inputs, room);
+    toward_lanes(at, toward->x, toward->y, toward->z, s->ratio, beyond, cosine, side);
+    mcr_glass_lost_lanes(at->n, s->alpha, beyond, cosine, other, room + MEAN * stride);
+    if (walls(inputs))
+        wall_lost_lanes(at->n, s->alpha, s->thin, cosine, other);
+    for (uint32_t c = 0; c < 3; c++) {
+        if (walls(inputs))
+            wall_lobe_lanes(at->n, s, inputs->channel[CHANNEL(TRANSMITTANCE) + c], inputs->stride[CHANNEL(TRANSMITTANCE) + c], up, down);
+        mcr_glass_add_lanes(at->n, room + LOST_O * stride, other, cosine, side, up, down, channel[c]);
+    }
+}
+
 /* ---- rough ---- */
 
 /* What one lane scatters from o to w: the value without the shares, the density with them, the cosine at the facet, whether w is on the other side. */
@@ -305,6 +430,8 @@ static int32_t evaluate(const struct mcr_host *host, struct mcr_context *context
     facet_lanes(at, &s, tangent, toward->x, toward->y, toward->z, value, cosine, crossed);
     for (uint32_t c = 0; c < 3; c++)
         share_lanes(at->n, &s, value, cosine, crossed, inputs->channel[CHANNEL(TRANSMITTANCE) + c], inputs->stride[CHANNEL(TRANSMITTANCE) + c], channel[c]);
+    if (compensates(inputs))
+        lobes(at, &s, inputs, toward, room, channel);
     return MCR_OK;
 }
 
@@ -323,9 +450,9 @@ static void density_lanes(const struct mcr_points *at, const struct interface *s
 }
 
 static void draw_lanes(const struct mcr_points *at, const struct interface *s, const double *const tangent[3], const double *const *number,
-                       double *restrict x, double *restrict y, double *restrict z)
+                       const double *choice, double *restrict x, double *restrict y, double *restrict z)
 {
-    const double *nx = at->nx, *ny = at->ny, *nz = at->nz, *ox = at->ox, *oy = at->oy, *oz = at->oz, *u = number[0], *v = number[1], *choice = number[2];
+    const double *nx = at->nx, *ny = at->ny, *nz = at->nz, *ox = at->ox, *oy = at->oy, *oz = at->oz, *u = number[0], *v = number[1];
     const double *tx = tangent[0], *ty = tangent[1], *tz = tangent[2], *ratio = s->ratio, *thin = s->thin, *alpha = s->alpha;
 
     for (uint32_t i = 0; i < at->n; i++) {
@@ -363,14 +490,25 @@ static int32_t draw(const struct mcr_host *host, struct mcr_context *context, co
                     const struct mcr_points *at, const double *const *number, const struct mcr_directions *out, double *density)
 {
     double *room = host->scratch(host, context);
+    const uint64_t stride = mcr_padded(at->n);
+    const double *tangent[3], *choice = number[2], *chance = room + LOST_O * stride, *share = room + SHARE * stride;
     struct interface s = interface_lanes(at, inputs, room);
-    const double *tangent[3];
+    const int several = compensates(inputs);
 
     (void)instance;
-    mcr_tangent_lanes(at, room + TANGENT * mcr_padded(at->n), tangent);
-    draw_lanes(at, &s, tangent, number, out->x, out->y, out->z);
-    density = density ? density : room + VALUES * mcr_padded(at->n);
+    mcr_tangent_lanes(at, room + TANGENT * stride, tangent);
+    if (several) {
+        lost(at, &s, inputs, room);
+        mcr_glass_choice_lanes(at->n, number[2], chance, room + CHOICE * stride);
+        choice = room + CHOICE * stride;
+    }
+    draw_lanes(at, &s, tangent, number, choice, out->x, out->y, out->z);
+    if (several)
+        mcr_glass_draw_lanes(at, tangent, number, s.alpha, chance, share, out->x, out->y, out->z);
+    density = density ? density : room + VALUES * stride;
     density_lanes(at, &s, tangent, out->x, out->y, out->z, density);
+    if (several)
+        mcr_glass_density_lanes(at, s.alpha, chance, share, out->x, out->y, out->z, density);
     mcr_drop_lanes(at->n, density, out->x, out->y, out->z);
     return MCR_OK;
 }
@@ -379,12 +517,17 @@ static int32_t density(const struct mcr_host *host, struct mcr_context *context,
                        const struct mcr_points *at, const struct mcr_directions *toward, double *density)
 {
     double *room = host->scratch(host, context);
+    const uint64_t stride = mcr_padded(at->n);
     struct interface s = interface_lanes(at, inputs, room);
     const double *tangent[3];
 
     (void)instance;
-    mcr_tangent_lanes(at, room + TANGENT * mcr_padded(at->n), tangent);
+    mcr_tangent_lanes(at, room + TANGENT * stride, tangent);
     density_lanes(at, &s, tangent, toward->x, toward->y, toward->z, density);
+    if (compensates(inputs)) {
+        lost(at, &s, inputs, room);
+        mcr_glass_density_lanes(at, s.alpha, room + LOST_O * stride, room + SHARE * stride, toward->x, toward->y, toward->z, density);
+    }
     return MCR_OK;
 }
 

@@ -10,8 +10,9 @@
  * ((ior - 1) / (ior + 1))^2) on up to `specular`, over base_color / pi (1 - E(o)) (1 - E(w)) / (1 - <E>), E being the directional albedo of the former in
  * its brightest colour and < > a mean weighted by the cosine: white loses nothing. glass is an interface with Fresnel's formulas, whose reflection `specular`
  * and `specular_color` scale, but where all is reflected; base_color tints what it passes. A thin wall has two interfaces; with F of one, all internal
- * reflections together reflect 2 F / (1 + F). Light that meets several facets of glass is lost, as with `dielectric`: of clear glass of index 1.5 seen at 60
- * degrees 0.7 % at roughness 0.3, 26 % at 1.
+ * reflections together reflect 2 F / (1 + F). Light that meets several facets of glass comes back with `compensation` as glass.h has it, tinted once: white
+ * glass loses nothing. That is for Fresnel's formulas as they are; where `specular` or `specular_color` is below 1, only that share of it comes back, and
+ * where specular_color raises the reflectance from r to r', (1 - r') / (1 - r): less than what is lost. A wall has no such factor.
  *
  * coat is clearcoat times GGX of F = 0.04 + 0.96 (1 - cos)^5, without a colour. sheen is sheen_color times the distribution of Estevez and Kulla,
  * "Production friendly microfacet sheen BRDF" (2017), with the visibility of Ashikhmin and Premoze, "Distribution-based BRDFs" (2007), 1 / (4 (cos_o + cos_w
@@ -24,6 +25,7 @@
  */
 #include "principled_base.h"
 #include "principled_lanes.h"
+#include <mcrender/glass.h>
 #include <stdlib.h>
 
 /* ---- create ---- */
@@ -47,6 +49,7 @@ static struct surface surface_of(const double *number)
     s.transmits = transmission > 0 && metallic < 1;
     s.thin = number[CHANNEL(THIN)] != 0;
     s.compensates = metallic > 0 && number[CHANNEL(COMPENSATION)] != 0 && !s.smooth;
+    s.several = s.transmits && number[CHANNEL(COMPENSATION)] != 0 && !s.smooth;
     s.diffuse = s.compensates || (metallic < 1 && transmission < 1);
     return s;
 }
@@ -231,6 +234,93 @@ static void shapes(const struct lanes *l, const struct mcr_points *at, const dou
         reflect_lanes(at, l->t, room_of(l, ALPHA), x, y, z, value, cosine);
 }
 
+/* ---- light that meets several facets of glass ---- */
+
+/* The index on this side over that on the other. */
+MCR_LOOP void beyond_lanes(uint32_t n, const double *restrict ratio, double *restrict beyond)
+{
+    for (uint32_t i = 0; i < n; i++)
+        beyond[i] = 1 / ratio[i];
+}
+
+/* Of the side that w is on. */
+MCR_LOOP void same_side_lanes(uint32_t n, const double *restrict ratio, const double *restrict crossed, double *restrict beyond)
+{
+    for (uint32_t i = 0; i < n; i++)
+        beyond[i] = crossed[i] != 0 ? beyond[i] : ratio[i];
+}
+
+/* The lobes of a wall, in its brightest colour. */
+MCR_LOOP void wall_lobe_lanes(const struct lanes *l, double *restrict up, double *restrict down, double *restrict share)
+{
+    const double *alpha = room_of(l, ALPHA), *ratio = room_of(l, RATIO), *tint = room_of(l, TINT), *specular = l->specular;
+
+    for (uint32_t i = 0; i < l->n; i++) {
+        double reflected = 0;
+
+        for (int k = 0; k < 8; k++) {
+            struct glass g = glass_of(mcr_mean_node_[k], ratio[i]);
+            reflected += mcr_mean_weight_[k] * wall_of(interface_of(g.plain, g.rest, ratio[i], tint[i], specular[i]));
+        }
+        mcr_glass_wall(alpha[i], reflected, 1 - reflected, &up[i], &down[i]);
+        share[i] = 1 - reflected;
+    }
+}
+
+/* What comes back, of all that glass of Fresnel's formulas loses: 1 for walls, which lose the same whatever they reflect. */
+MCR_LOOP void back_lanes(const struct lanes *l, double least, double *restrict back)
+{
+    const double *tint = room_of(l, TINT), *specular = l->specular, *metallic = l->metallic, *transmission = l->transmission;
+    const int thin = l->surface->thin;
+
+    for (uint32_t i = 0; i < l->n; i++) {
+        double r = least * tint[i], left = (1 - (r < 1 ? r : 1)) / (1 - least), kept = specular[i] * (tint[i] < 1 ? tint[i] : left);
+        back[i] = (1 - metallic[i]) * transmission[i] * (thin ? 1 : kept);
+    }
+}
+
+/* Of the outgoing direction. */
+static void lose(const struct lanes *l)
+{
+    const struct surface *s = l->surface;
+    double *beyond = room_of(l, BEYOND), *up = room_of(l, UP), *down = room_of(l, DOWN), *share = room_of(l, SHARE);
+
+    back_lanes(l, least_of(s->ior), room_of(l, BACK));
+    if (s->thin) {
+        wall_lobe_lanes(l, up, down, share);
+        return;
+    }
+    beyond_lanes(l->n, room_of(l, RATIO), beyond);
+    mcr_glass_lost_lanes(l->n, room_of(l, ALPHA), room_of(l, RATIO), room_of(l, COSINE_O), room_of(l, CLEAR_O), room_of(l, MEAN));
+    mcr_glass_lost_lanes(l->n, room_of(l, ALPHA), beyond, NULL, NULL, room_of(l, MEAN_BEYOND));
+    mcr_glass_lobe_lanes(l->n, room_of(l, RATIO), room_of(l, MEAN), room_of(l, MEAN_BEYOND), up, down, share);
+}
+
+static const double *lost_of(const struct lanes *l, int toward)
+{
+    return room_of(l, (l->surface->thin ? LOST_O : CLEAR_O) + (uint32_t)toward);
+}
+
+/* Of both directions. */
+static void lose_both(const struct lanes *l)
+{
+    lose(l);
+    if (l->surface->thin)
+        return;
+    same_side_lanes(l->n, room_of(l, RATIO), room_of(l, CROSSED), room_of(l, BEYOND));
+    mcr_glass_lost_lanes(l->n, room_of(l, ALPHA), room_of(l, BEYOND), room_of(l, COSINE_W), room_of(l, CLEAR_W), room_of(l, MEAN));
+}
+
+MCR_LOOP void again_lanes(const struct lanes *l, const double *restrict lost_o, const double *restrict lost_w, const double *restrict base, double *restrict out)
+{
+    const double *cosine = room_of(l, COSINE_W), *crossed = room_of(l, CROSSED), *up = room_of(l, UP), *down = room_of(l, DOWN), *back = room_of(l, BACK);
+
+    for (uint32_t i = 0; i < l->n; i++) {
+        double f = lost_o[i] * lost_w[i] * cosine[i] * (crossed[i] != 0 ? down[i] : up[i]);
+        out[i] += back[i] * base[i] * f;
+    }
+}
+
 static int32_t evaluate(const struct mcr_host *host, struct mcr_context *context, const void *instance, const struct mcr_inputs *inputs,
                         const struct mcr_points *at, const struct mcr_directions *toward, const struct mcr_colours *out)
 {
@@ -243,6 +333,8 @@ static int32_t evaluate(const struct mcr_host *host, struct mcr_context *context
     if (s->diffuse)
         diffuse_lanes(&l, least, s->compensates, room_of(&l, ALPHA), room_of(&l, TINT), l.specular, room_of(&l, COSINE_W), room_of(&l, LOST_O),
                       room_of(&l, LOST_W), room_of(&l, GRAZING_O), room_of(&l, GRAZING_W), white, again);
+    if (s->several)
+        lose_both(&l);
     for (uint32_t c = 0; c < 3; c++) {
         if (s->smooth)
             mcr_fill_lanes(l.n, 0, channel[c]);
@@ -252,6 +344,8 @@ static int32_t evaluate(const struct mcr_host *host, struct mcr_context *context
             specular_lanes(&l, least, room_of(&l, VALUE), room_of(&l, FACET), l.base[c], l.tint[c], channel[c]);
         if (s->diffuse)
             spread_lanes(&l, room_of(&l, ALPHA), l.base[c], white, again, channel[c]);
+        if (s->several)
+            again_lanes(&l, lost_of(&l, 0), lost_of(&l, 1), l.base[c], channel[c]);
         layers_lanes(l.n, room_of(&l, OVER), room_of(&l, UNDER), room_of(&l, CROSSED), room_of(&l, COATED), room_of(&l, FIBRES), l.sheen[c], channel[c]);
     }
     return MCR_OK;
@@ -293,6 +387,19 @@ MCR_LOOP void cuts_lanes(uint32_t n, double *restrict coated, double *restrict f
     }
 }
 
+/* Of all weights, that of the light that meets several facets of glass: as the chance of its lobes, `back`. */
+MCR_LOOP void several_lanes(const struct lanes *l, const double *restrict lost, const double *restrict coated, const double *restrict facets,
+                            const double *restrict fibres, const double *restrict diffuse, double *restrict back)
+{
+    const double *coat = room_of(l, COAT_O), *sheen = room_of(l, SHEEN_O), *tint = room_of(l, SHEEN_TINT), *grey = room_of(l, GREY);
+
+    for (uint32_t i = 0; i < l->n; i++) {
+        double e = sheen[i] < 1 ? sheen[i] : 1, weight = (1 - coat[i]) * (1 - tint[i] * e) * grey[i] * back[i] * lost[i];
+        double sum = coated[i] + facets[i] + fibres[i] + diffuse[i] + weight;
+        back[i] = weight / (sum > 0 ? sum : 1);
+    }
+}
+
 static void chances(const struct lanes *l)
 {
     double *c[4];
@@ -300,6 +407,10 @@ static void chances(const struct lanes *l)
     for (uint32_t k = 0; k < 4; k++)
         c[k] = room_of(l, CHANCE + k);
     weights_lanes(l, c[0], c[1], c[2], c[3]);
+    if (l->surface->several) {
+        lose(l);
+        several_lanes(l, lost_of(l, 0), c[0], c[1], c[2], c[3], room_of(l, BACK));
+    }
     cuts_lanes(l->n, c[0], c[1], c[2], c[3]);
     if (!l->surface->transmits)
         mcr_fill_lanes(l->n, l->surface->ior, room_of(l, RATIO)); /* any number: nothing passes */
@@ -386,11 +497,21 @@ static int32_t draw(const struct mcr_host *host, struct mcr_context *context, co
                     const struct mcr_points *at, const double *const *number, const struct mcr_directions *out, double *density)
 {
     struct lanes l = lanes_of(instance, at, inputs, host->scratch(host, context));
+    const double *others[3] = {number[0], number[1], number[2]}, *chance = room_of(&l, BACK), *share = room_of(&l, SHARE), *alpha = room_of(&l, ALPHA);
+    const int several = l.surface->several;
 
     chances(&l);
-    draw_lanes(&l, at, number, out->x, out->y, out->z);
+    if (several) {
+        mcr_glass_choice_lanes(l.n, number[2], chance, room_of(&l, CHOICE));
+        others[2] = room_of(&l, CHOICE);
+    }
+    draw_lanes(&l, at, others, out->x, out->y, out->z);
+    if (several)
+        mcr_glass_draw_lanes(at, l.t, number, alpha, chance, share, out->x, out->y, out->z);
     density = density ? density : room_of(&l, VALUE);
     density_lanes(&l, at, out->x, out->y, out->z, density);
+    if (several)
+        mcr_glass_density_lanes(at, alpha, chance, share, out->x, out->y, out->z, density);
     mcr_drop_lanes(l.n, density, out->x, out->y, out->z);
     return MCR_OK;
 }
@@ -402,6 +523,8 @@ static int32_t density(const struct mcr_host *host, struct mcr_context *context,
 
     chances(&l);
     density_lanes(&l, at, toward->x, toward->y, toward->z, density);
+    if (l.surface->several)
+        mcr_glass_density_lanes(at, room_of(&l, ALPHA), room_of(&l, BACK), room_of(&l, SHARE), toward->x, toward->y, toward->z, density);
     return MCR_OK;
 }
 

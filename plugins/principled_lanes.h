@@ -10,17 +10,18 @@
 struct surface {
     int smooth, coat, coat_smooth, sheen, transmits, thin, compensates;
     int diffuse; /* something is scattered that is no lobe of GGX */
+    int several; /* light that meets several facets of glass comes back */
     double ior;
 };
 
 /*
  * Arrays of scratch, of mcr_padded(n) doubles each. ..._O and ..._W are for the outgoing direction and for the other one: LOST and GRAZING are E of the base's
- * GGX (microfacet.h), COAT and SHEEN those layers' own E.
+ * GGX (microfacet.h), COAT and SHEEN those layers' own E, CLEAR the 1 - E of glass. BEYOND to CHOICE are used with `several` alone.
  */
 enum {
     COLOURS, INPUT = COLOURS + 9, ALPHA = INPUT + 7, COAT_ALPHA, RATIO, TANGENT, COSINE_O = TANGENT + 3, COSINE_W, LOST_O, LOST_W, GRAZING_O, GRAZING_W,
     COAT_O, COAT_W, SHEEN_O, SHEEN_W, TINT, SHEEN_TINT, GREY, VALUE, FACET, CROSSED, PLAIN, REST, COATED, FIBRES, OVER, UNDER, WHITE, METAL_AGAIN, CHANCE,
-    ARRAYS = CHANCE + 4
+    BEYOND = CHANCE + 4, CLEAR_O, CLEAR_W, MEAN, MEAN_BEYOND, UP, DOWN, SHARE, BACK, CHOICE, ARRAYS
 };
 
 static uint64_t scratch_bytes(const void *instance, uint32_t n)
@@ -108,7 +109,7 @@ static void albedos(const struct lanes *l, const struct mcr_points *at, const do
         sheen_lanes(l->n, l->sheen_roughness, cosine, room_of(l, SHEEN_O + (uint32_t)toward));
     else
         mcr_fill_lanes(l->n, 0, room_of(l, SHEEN_O + (uint32_t)toward));
-    if (s->diffuse || !toward)
+    if (s->diffuse || s->several || !toward)
         ggx_lanes(l->n, s->smooth, room_of(l, ALPHA), cosine, lost, grazing);
 }
 

@@ -74,7 +74,7 @@ static const struct mcr_parameter parameters[PARAMETERS] = {
                       .name = "compensation",
                       .unit = "",
                       .choices = "none|kulla-conty",
-                      .summary = "Whether the light that meets several facets of metal is lost or comes back in a diffuse lobe.",
+                      .summary = "Whether the light that meets several facets of metal or of what transmits is lost or comes back in diffuse lobes.",
                       .fallback = {1}},
 };
 

@@ -13,7 +13,7 @@ installed=$(files)
 holds() { check "installed: $1" grep -qE "/$1\$" <<<"$installed"; }
 holds bin/mcrender
 for word in $MCR_PLUGINS; do holds "mcrender-1/plugins/$word\\.so"; done
-for header in plugin sampler material math surface microfacet; do holds "include/mcrender/$header\\.h"; done
+for header in plugin sampler material math surface microfacet glass glass_table; do holds "include/mcrender/$header\\.h"; done
 holds 'pkgconfig/mcrender-plugin\.pc'
 holds 'bash-completion/completions/mcrender\.bash'
 for page in $MCR_MAN; do holds "man/man${page##*.}/$(basename "$page")"; done
@@ -23,7 +23,7 @@ empty "no .la file and no library is installed" "$(grep -E '\.la$|\.a$|/lib[^/]*
 empty "everything is below the prefix" "$(grep -v "^\\.$prefix/" <<<"$installed")"
 
 include=$(find "$root" -path '*/include/mcrender' -type d)
-for header in plugin sampler material math surface microfacet; do
+for header in plugin sampler material math surface microfacet glass glass_table; do
     echo "#include <mcrender/$header.h>" >"$TMPDIR/$header.c"
     check "$header.h compiles by itself from where it is installed" \
         $MCR_CC -std=c11 -Wall -Wextra -pedantic -Werror -I"${include%/mcrender}" -c "$TMPDIR/$header.c" -o "$TMPDIR/$header.o"
