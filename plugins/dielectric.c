@@ -531,14 +531,31 @@ static int32_t density(const struct mcr_host *host, struct mcr_context *context,
     return MCR_OK;
 }
 
-/* Nothing is absorbed at the interface. */
+/* Of a smooth interface; what a wall's inside absorbs is lost. */
+static void albedo_lanes(const struct mcr_points *at, const struct interface *s, const double *inside, uint32_t stride, double *restrict out)
+{
+    const double *nx = at->nx, *ny = at->ny, *nz = at->nz, *ox = at->ox, *oy = at->oy, *oz = at->oz, *ratio = s->ratio, *thin = s->thin;
+
+    for (uint32_t i = 0; i < at->n; i++) {
+        double c = mcr_dot(mcr_vector(nx[i], ny[i], nz[i]), mcr_vector(ox[i], oy[i], oz[i]));
+        struct shares f = shares_of(mcr_within_unit_(c), ratio[i], thin[i], inside[i * stride]);
+        out[i] = mcr_within_unit_(f.reflected + f.passed);
+    }
+}
+
+/* That of rough ones is left to the host's estimate. */
 static int32_t albedo(const struct mcr_host *host, struct mcr_context *context, const void *instance, const struct mcr_inputs *inputs,
                       const struct mcr_points *at, const struct mcr_colours *out)
 {
-    (void)host, (void)context, (void)instance, (void)inputs;
-    mcr_fill_lanes(at->n, 1, out->r);
-    mcr_fill_lanes(at->n, 1, out->g);
-    mcr_fill_lanes(at->n, 1, out->b);
+    double *channel[3] = {out->r, out->g, out->b};
+    struct interface s;
+
+    (void)instance;
+    if (inputs->stride[CHANNEL(ROUGHNESS)] || inputs->channel[CHANNEL(ROUGHNESS)][0] > 0)
+        return MCR_E_UNSUPPORTED;
+    s = interface_lanes(at, inputs, host->scratch(host, context));
+    for (uint32_t c = 0; c < 3; c++)
+        albedo_lanes(at, &s, inputs->channel[CHANNEL(TRANSMITTANCE) + c], inputs->stride[CHANNEL(TRANSMITTANCE) + c], channel[c]);
     return MCR_OK;
 }
 

@@ -617,31 +617,34 @@ static int32_t delta(const struct mcr_host *host, struct mcr_context *context, c
 
 /* ---- feature layers ---- */
 
-MCR_LOOP void albedo_lanes(const struct lanes *l, const double *restrict base, const double *restrict tint, const double *restrict sheen_colour,
-                           double *restrict out)
+/* Of plastic, and of metal without compensation. */
+MCR_LOOP void albedo_lanes(const struct lanes *l, const double *restrict base, const double *restrict tint, double *restrict out)
 {
-    const double *lost = room_of(l, LOST_O), *grazing = room_of(l, GRAZING_O), *coat = room_of(l, COAT_O), *sheen = room_of(l, SHEEN_O);
-    const double *most = room_of(l, SHEEN_TINT), *brightest = room_of(l, TINT), *specular = l->specular, *metallic = l->metallic;
+    const double *lost = room_of(l, LOST_O), *grazing = room_of(l, GRAZING_O), *brightest = room_of(l, TINT), *specular = l->specular, *metallic = l->metallic;
     const double least = least_of(l->surface->ior);
 
     for (uint32_t i = 0; i < l->n; i++) {
-        double e = sheen[i] < 1 ? sheen[i] : 1, kept = 1 - lost[i], metal = base[i] + (1 - base[i]) * grazing[i];
+        double kept = 1 - lost[i], metal = kept * (base[i] + (1 - base[i]) * grazing[i]);
         double reflected = kept * plastic_of(least, tint[i], specular[i], grazing[i]);
         double under = (1 - kept * plastic_of(least, brightest[i], specular[i], grazing[i])) * base[i];
-        double all = sheen_colour[i] * e + (1 - most[i] * e) * (metallic[i] * metal + (1 - metallic[i]) * (reflected + under));
 
-        out[i] = mcr_within_unit_(coat[i] + (1 - coat[i]) * all);
+        out[i] = mcr_within_unit_(metallic[i] * metal + (1 - metallic[i]) * (reflected + under));
     }
 }
 
+/* That of layers, of glass and of what comes back from metal is left to the host's estimate. */
 static int32_t albedo(const struct mcr_host *host, struct mcr_context *context, const void *instance, const struct mcr_inputs *inputs,
                       const struct mcr_points *at, const struct mcr_colours *out)
 {
-    struct lanes l = lanes_of(instance, at, inputs, host->scratch(host, context));
+    const struct surface *s = instance;
     double *channel[3] = {out->r, out->g, out->b};
+    struct lanes l;
 
+    if (s->coat || s->sheen || s->transmits || s->compensates)
+        return MCR_E_UNSUPPORTED;
+    l = lanes_of(instance, at, inputs, host->scratch(host, context));
     for (uint32_t c = 0; c < 3; c++)
-        albedo_lanes(&l, l.base[c], l.tint[c], l.sheen[c], channel[c]);
+        albedo_lanes(&l, l.base[c], l.tint[c], channel[c]);
     return MCR_OK;
 }
 

@@ -46,6 +46,16 @@ void mcr_features_begin(struct mcr_batch *batch, size_t first, uint32_t n)
 
 /* ---- Albedo ---------------------------------------------------------------------------------------------------- */
 
+/* What the radiance that lane i's direction brings counts for: light that comes out of matter has lost the square of its index, which is no loss of light. */
+static double square_index(const struct mcr_batch *batch, const struct mcr_range *range, uint32_t i)
+{
+    const struct mcr_surface_points *at = &batch->at;
+    const struct mcr_feature_slots *f = &batch->features;
+    const uint32_t k = range->begin + i;
+    double n = at->here && at->gx[k] * f->x[i] + at->gy[k] * f->y[i] + at->gz[k] * f->z[i] < 0 ? at->beyond[k] / at->here[k] : 1;
+    return n * n;
+}
+
 /* Draw `d` of all points of the range: mirror-like lobe or direction, whose weight over its probability is added to f->sum. */
 static int32_t add_draw(struct mcr_batch *batch, const struct mcr_range *range, uint32_t d)
 {
@@ -71,7 +81,7 @@ static int32_t add_draw(struct mcr_batch *batch, const struct mcr_range *range, 
         for (uint32_t i = 0; i < n && !status; i++) {
             int chosen = f->x[i] != 0 || f->y[i] != 0 || f->z[i] != 0;
             for (int c = 0; c < 3 && chosen && f->probability[i] > 0; c++)
-                f->sum[c][i] += value[c][i] / f->probability[i];
+                f->sum[c][i] += value[c][i] * square_index(batch, range, i) / f->probability[i];
             f->probability[i] = chosen ? 0 : f->probability[i];
             f->number[2][i] = mcr_number(key[i], DIMENSION_ALBEDO + 64 + d); /* lobes are chosen: the number that chose is used up */
         }
@@ -82,7 +92,7 @@ static int32_t add_draw(struct mcr_batch *batch, const struct mcr_range *range, 
         status = mcr_group_evaluate(batch, range, &out, &colours);
     for (uint32_t i = 0; i < n && !status && group->spreads; i++)
         for (int c = 0; c < 3 && f->density[i] > 0 && f->probability[i] > 0; c++)
-            f->sum[c][i] += value[c][i] / (f->density[i] * f->probability[i]);
+            f->sum[c][i] += value[c][i] * square_index(batch, range, i) / (f->density[i] * f->probability[i]);
     return status;
 }
 
@@ -108,7 +118,13 @@ static int32_t albedos(struct mcr_batch *batch, const struct mcr_range *range)
     const uint32_t n = range->end - range->begin;
     int32_t status = MCR_OK;
     if (group->scatters && tells_albedo(batch->core, group))
-        return mcr_group_albedo(batch, range, &(struct mcr_colours){sizeof(struct mcr_colours), n, f->sum[0], f->sum[1], f->sum[2]});
+        status = mcr_group_albedo(batch, range, &(struct mcr_colours){sizeof(struct mcr_colours), n, f->sum[0], f->sum[1], f->sum[2]});
+    else
+        status = MCR_E_UNSUPPORTED;
+    if (status != MCR_E_UNSUPPORTED)
+        return status;
+    batch->failed = NULL;
+    status = MCR_OK;
     for (int c = 0; c < 3; c++)
         memset(f->sum[c], 0, n * sizeof(double));
     for (uint32_t d = 0; d < DRAWS && group->scatters && !status; d++)

@@ -103,8 +103,8 @@ struct mcr_material_plugin {
     int32_t (*passes)(const struct mcr_host *host, struct mcr_context *context, const void *instance, const struct mcr_inputs *inputs,
                       const struct mcr_points *at, const struct mcr_colours *out);
     /*
-     * The share of light that the surface scatters, about, in [0, 1], of which what crosses is no part: for feature layers, not for the image. NULL: the
-     * host estimates it. Of a material with others inside it is asked only where all those of them that scatter tell theirs.
+     * The share of light that the surface scatters, about, in [0, 1], of which what crosses is no part: for feature layers, not for the image. NULL,
+     * or MCR_E_UNSUPPORTED returned: the host estimates it. Of a material with others inside it is asked only where all those of them that scatter tell theirs.
      */
     int32_t (*albedo)(const struct mcr_host *host, struct mcr_context *context, const void *instance, const struct mcr_inputs *inputs,
                       const struct mcr_points *at, const struct mcr_colours *out);

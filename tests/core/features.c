@@ -221,6 +221,46 @@ static void test_smooth(void)
     mcr_features_destroy(f);
 }
 
+/* The boundary of an interior loses no light, though radiance changes with the index. */
+static void test_matter(const char *material, double tolerance)
+{
+    char text[1000];
+    double albedo[3], sum = 0;
+    snprintf(text, sizeof text, "camera orthographic { from (0, 0, 5) to (0, 0, 0) height 1.2 }\nmaterial m %s\nsphere { center (0, 0, 0) radius 1 material m }\n",
+             material);
+    struct mcr_features *f = render(text, "spp 64 depth 0 sampler bsdf", "box", MCR_FEATURE_ALBEDO, image);
+    if (!ok(f != NULL, "%s renders", material))
+        return;
+    for (uint64_t p = 0; p < PIXELS; p++) {
+        mcr_features_value(f, MCR_FEATURE_ALBEDO, p, albedo);
+        sum += albedo[1] / PIXELS;
+    }
+    ok(fabs(sum - 1) < tolerance, "%s: albedo %.6f", material, sum);
+    mcr_features_destroy(f);
+}
+
+/* A wall, seen under 45 degrees, shows what it reflects and passes of the light around it; a smooth one to rounding. */
+static void test_walls(void)
+{
+    static const char *const rough[] = {"", " roughness 0.4", " roughness 0.4 compensation kulla-conty"};
+    for (int i = 0; i < 3; i++) {
+        char text[1000];
+        double mean = 0, seen = 0, albedo[3];
+        snprintf(text, sizeof text, "camera orthographic { from (0, 3, 3) to (0, 0, 0) height 0.1 }\nmaterial m dielectric { thin yes transmittance (0.1, 0.5, 1)%s }\n"
+                 "quad { corner (-1, -1, 0) u (2, 0, 0) v (0, 2, 0) material m }\n", rough[i]);
+        struct mcr_features *f = render(text, "spp 1024 depth 1 sampler bsdf roulette off background 1", "box", MCR_FEATURE_ALBEDO, image);
+        if (!ok(f != NULL, "a wall renders"))
+            return;
+        for (uint64_t p = 0; p < PIXELS; p++) {
+            mcr_features_value(f, MCR_FEATURE_ALBEDO, p, albedo);
+            mean += albedo[0] / PIXELS;
+            seen += image[3 * p] / PIXELS;
+        }
+        ok(fabs(mean - seen) < 0.002 && seen > 0.1 && seen < 0.4, "a wall%s: albedo %.6f, furnace %.6f", rough[i], mean, seen);
+        mcr_features_destroy(f);
+    }
+}
+
 /* In rounds a pixel has the layers that it has in a render with as many samples everywhere. */
 static void test_rounds(void)
 {
@@ -273,6 +313,15 @@ int main(void)
     test_albedo("conductor { metal gold roughness 0.5 }", 0.002);
     test_albedo("mix { first a second b amount 0.3 }\nmaterial a lambert { albedo (0.3, 0.5, 0.9) }\nmaterial b mirror { reflectance (0.9, 0.2, 0.4) }", 0.002);
     test_albedo("mix { first a second b amount 0.7 }\nmaterial a oren-nayar { albedo (0.9, 0.5, 0.3) sigma 0.8 }\nmaterial b emitter { radiance 0 }", 0.002);
+    test_albedo("principled { base_color (0.9, 0.5, 0.3) roughness 0.6 }", 0.002);
+    test_albedo("principled { base_color (0.9, 0.5, 0.3) metallic 0.5 }", 0.002);
+    test_albedo("principled { base_color (0.9, 0.5, 0.3) metallic 1 roughness 0.8 compensation none }", 0.002);
+    test_albedo("principled { base_color 0.3 sheen_color 1 }", 0.002);
+    test_albedo("principled { base_color (0.9, 0.5, 0.3) clearcoat 1 }", 0.002);
+    test_matter("dielectric { index 1.5 }", 1e-9);
+    test_matter("dielectric { index 1.5 roughness 0.5 compensation kulla-conty }", 0.005);
+    test_matter("principled { transmission 1 roughness 0.7 }", 0.005);
+    test_walls();
     test_mask();
     test_rounds();
     test_smooth();
