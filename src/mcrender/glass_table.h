@@ -1,5 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* mcrender plugin interface: the numbers of glass.h, which tells what they are and includes them. Computed for mcrender. */
+/*
+ * mcrender plugin interface: the numbers of glass.h, which tells what they are and includes them. Computed for mcrender, made by
+ * tests/plugins/glass_table.py.
+ */
 #ifndef MCRENDER_GLASS_TABLE_H
 #define MCRENDER_GLASS_TABLE_H
 
