@@ -11,8 +11,9 @@
  *
  * 1 - F is n^2 times what it is seen from j, so that n^2 f is the same both ways; and E + (1 - b) L + b L = 1, on both sides.
  *
- * L is a table over the cosine, alpha and the index, of midpoint sums over 800 x 320 visible normals: it is within 4e-4 of them for indices from 1.02 to 4
- * and their inverses and alpha from 1e-3 on, XX
+ * L is a table over the cosine, alpha and the index, of midpoint sums over 800 x 320 visible normals (tests/plugins/glass_table.py makes it). For indices
+ * from 1.02 to 4, their inverses, and alpha from 1e-3 on, all light is kept to 2.5e-4 in 99 of 100 places and to 1.5e-3 in the worst, at the horizon.
+ * Above an index of 4 less comes back than is lost; between 1 / 1.02 and 1.02, and below that alpha, nothing does.
  */
 #ifndef MCRENDER_GLASS_H
 #define MCRENDER_GLASS_H
