@@ -388,7 +388,7 @@ static void test_smooth(void)
     double worst = 0, metal = 0, coat = 0, none = 0;
 
     for (uint32_t k = 0; k < 3 * 8; k++) {
-        double settings[21] = {1.5, 0, 0, 0, 0, 0, k % 3 == 2, 0, 0, 1, 1, 1, 1}, mu = 0.05 + 0.95 * fixed(510, k), side = k % 3 == 1 ? -1 : 1;
+        double settings[24] = {1.5, 0, 0, 0, 0, 0, k % 3 == 2, 0, 0, 1, 1, 1, 1}, mu = 0.05 + 0.95 * fixed(510, k), side = k % 3 == 1 ? -1 : 1;
         struct looks a = plain;
         struct sheet sheet, other;
 
