@@ -14,7 +14,7 @@ int32_t mcr_lobes_choose(struct mcr_batch *batch, const struct mcr_range *range)
     if (!status)
         status = mcr_group_delta(batch, range, (const double *const *)&number, &out, l->probability + b, &weight);
     for (uint32_t k = b; k < range->end && !status; k++)
-        l->none[k] = (l->x[k] == 0) & (l->y[k] == 0) & (l->z[k] == 0) ? 1.0 : 0.0;
+        l->none[k] = ((l->x[k] == 0) & (l->y[k] == 0) & (l->z[k] == 0)) ? 1.0 : 0.0;
     return status;
 }
 

@@ -224,7 +224,7 @@ static void test_rough(void)
     struct sheet sheet;
 
     for (uint32_t k = 0; k < LENGTH(cases); k++) {
-        double mass, z, energy = 0, energies = 0, known, scale, sum = 0, squares = 0, grid = 0, error, reflected = 0;
+        double mass, z, energy = 0, energies = 0, known, scale, sum = 0, squares = 0, grid = 0, error;
         uint32_t lane = 0, bad = 0;
 
         init(&sheet, cases[k].side);
@@ -244,7 +244,6 @@ static void test_rough(void)
 
                 bad += !isfinite(value) || value < 0 || weighed > 1 + HEAVY;
                 energy += weighed / (64.0 * LANES), energies += weighed * weighed / (64.0 * LANES), sum += value / (64.0 * LANES), squares += value * value / (64.0 * LANES);
-                reflected += below > 0 ? value / (64.0 * LANES) : 0;
             }
         }
         known = one_facet(cases[k].mu, cases[k].alpha, cases[k].side > 0 || cases[k].thin ? cases[k].index : 1 / cases[k].index, cases[k].thin);
