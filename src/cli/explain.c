@@ -83,7 +83,7 @@ static void estimate_memory(struct mcr_explain_data *data, uint32_t features)
     const uint64_t pixels = (uint64_t)(scene->film.x1 - scene->film.x0) * (scene->film.y1 - scene->film.y0);
     const uint32_t planned = (render->spp + render->replicates - 1) / render->replicates;
     const int correlated = scene->sampler->correlated;
-    uint64_t layers = pixels * mcr_features_bytes(features);
+    uint64_t layers = pixels * mcr_features_bytes(features, mcr_render_in_rounds(render));
     uint64_t plain = mcr_film_bytes(pixels, correlated, 0, planned, render->replicates);
     plain += mcr_render_in_rounds(render) ? mcr_film_pixel_bytes(pixels, correlated) : 0;
     data->variance_bytes = data->options->variance_layer ? mcr_film_bytes(pixels, correlated, 1, planned, render->replicates) - plain : 0;

@@ -241,7 +241,7 @@ static int take(struct mcr_options *options, const struct option *option, const 
         if (mcr_layers_parse(text, &options->layers))
             return MCR_EXIT_USAGE;
         options->variance_layer = o->channel_variance = (options->layers & MCR_LAYER_VARIANCE) != 0;
-        o->layer_bytes = mcr_features_bytes(mcr_layers_features(options->layers));
+        o->layer_bytes = mcr_features_bytes(mcr_layers_features(options->layers), 1);
         return 0;
     case TIME:
         o->has_time = 1;

@@ -157,7 +157,7 @@ void mcr_report_warnings(FILE *to, const struct mcr_report_data *data)
                 (unsigned long long)stats->not_finite, stats->not_finite_x, stats->not_finite_y, (unsigned long long)stats->not_finite_sample);
     if (stats->overfull)
         fprintf(to, "mcrender: warning: %llu rays entered more interiors, one inside the other, than are accounted for: the picture is wrong where these "
-                "are seen; are surfaces with interiors closed, and at most 16 deep?\n", (unsigned long long)stats->overfull);
+                "are seen; are surfaces with interiors closed, and at most %u deep?\n", (unsigned long long)stats->overfull, MCR_INTERIORS);
     const struct mcr_render_settings *render = &data->loaded->scene->render;
     if (data->sampling && render->target_error > 0 && data->sampling->stopped != MCR_STOPPED_TARGET)
         fprintf(to, "mcrender: warning: the target error %.6g is not reached: stopped by %s\n", render->target_error, stopped_by(data));

@@ -35,8 +35,6 @@
 #define MCR_DIMENSION_LIGHT 24u    /* of bounce 0: 8 + 16 */
 #define MCR_DIMENSION_ROULETTE 32u /* of bounce 0: 8 + 24 */
 
-#define MCR_INTERIORS 16u /* interiors that a path remembers being in, at most: see crossing.h */
-
 /* A path's state, apart from where it is. */
 struct mcr_paths {
     double *r, *g, *b;      /* throughput */

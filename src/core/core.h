@@ -44,6 +44,8 @@ enum mcr_stage {
 };
 extern const char *const mcr_stage_name[MCR_STAGE_COUNT];
 
+#define MCR_INTERIORS 16u /* interiors that a path remembers being in, at most: see crossing.h */
+
 #define MCR_TASK_CELLS 65536u /* cells of a task at most */
 
 /* One replicate of one pixel, or with independent numbers the next of its samples. */

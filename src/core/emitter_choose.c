@@ -47,8 +47,7 @@ static inline double clipped(double middle, double half)
 
 /*
  * Importances of a node's children: power * cosine at the emitters * cosine at the surface / distance^2, each cosine about as it is on average
- * over the ball and the cone, but never 0 where one of them is not (bounds of the cosines, in place of averages, make more than four times
- * as much variance where surfaces scatter evenly). With d from the ball's centre c to the point: some q of the emitters and some n of their
+ * over the ball and the cone, but never 0 where one of them is not. With d from the ball's centre c to the point: some q of the emitters and some n of their
  * normals has n.(p - q) > 0 only if a.d / |d| + open + lift / |d| > 0; and a part of the ball is in front of the surface only if
  * -n.d / |d| + radius / |d| > 0. Cones wider than a hemisphere's are taken for the more even the wider they are. The distance counts as at
  * least the radius.
@@ -114,15 +113,6 @@ static inline int32_t go_down(const struct mcr_emitters *all, int32_t node, cons
     return all->bounds[node].child[child];
 }
 
-/* Asks for what is read next, after all other lanes: a node, or an emitter's constants. Worth a tenth of a sample's time among 10,000. */
-static inline void fetch(const struct mcr_emitters *all, int32_t child)
-{
-    const char *at = child >= 0 ? (const char *)&all->bounds[child] : (const char *)all->k[child != INT32_MIN ? ~child : 0];
-    const uint32_t bytes = child >= 0 ? sizeof *all->bounds : sizeof *all->k;
-    for (uint32_t b = 0; b < bytes; b += 64)
-        __builtin_prefetch(at + b);
-}
-
 void MCR_ISA_NAME(mcr_emitter_choose)(const struct mcr_emitters *all, const struct mcr_emitter_lanes *points, const double *restrict number,
                                       struct mcr_emitter_scratch *scratch)
 {
@@ -146,7 +136,6 @@ void MCR_ISA_NAME(mcr_emitter_choose)(const struct mcr_emitters *all, const stru
             d->list[left] = i;
             left += child >= 0;
             scratch->chosen[i] = child < 0 && child != INT32_MIN ? ~child : -1;
-            fetch(all, child);
         }
         count = left;
     }

@@ -116,14 +116,11 @@ static int32_t albedos(struct mcr_batch *batch, const struct mcr_range *range)
     struct mcr_feature_slots *f = &batch->features;
     const struct mcr_group *group = &batch->core->group[range->group];
     const uint32_t n = range->end - range->begin;
-    int32_t status = MCR_OK;
-    if (group->scatters && tells_albedo(batch->core, group))
-        status = mcr_group_albedo(batch, range, &(struct mcr_colours){sizeof(struct mcr_colours), n, f->sum[0], f->sum[1], f->sum[2]});
-    else
-        status = MCR_E_UNSUPPORTED;
+    struct mcr_colours told = {sizeof told, n, f->sum[0], f->sum[1], f->sum[2]};
+    int32_t status = group->scatters && tells_albedo(batch->core, group) ? mcr_group_albedo(batch, range, &told) : MCR_E_UNSUPPORTED;
     if (status != MCR_E_UNSUPPORTED)
         return status;
-    batch->failed = NULL;
+    batch->failed = NULL; /* no failure: it leaves the estimate to us */
     status = MCR_OK;
     for (int c = 0; c < 3; c++)
         memset(f->sum[c], 0, n * sizeof(double));

@@ -4,11 +4,11 @@
 #include <math.h>
 #include <stdlib.h>
 
-uint32_t mcr_features_bytes(uint32_t asked)
+uint32_t mcr_features_bytes(uint32_t asked, int by_pixel)
 {
     uint32_t triples = !!(asked & MCR_FEATURE_ALBEDO) + !!(asked & MCR_FEATURE_NORMAL) + (asked & MCR_FEATURE_DIRECT ? 2 : 0);
     /* the cells of a pass besides */
-    return triples * 24 + (asked & MCR_FEATURE_DEPTH ? 16 : 0) + (asked & MCR_FEATURE_ID ? 12 : 0) +
+    return triples * 24 + (asked & MCR_FEATURE_DEPTH ? 16 : 0) + (asked & MCR_FEATURE_ID ? 12 : 0) + (asked && by_pixel ? 8 : 0) +
            (asked ? (uint32_t)sizeof(struct mcr_cell_features) : 0);
 }
 

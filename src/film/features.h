@@ -21,8 +21,8 @@ struct mcr_features {
 
 #define MCR_FEATURE_INDIRECT 32u /* a layer; asked for with MCR_FEATURE_DIRECT */
 
-/* Bytes a pixel. */
-uint32_t mcr_features_bytes(uint32_t asked);
+/* Bytes a pixel; by_pixel as below. */
+uint32_t mcr_features_bytes(uint32_t asked, int by_pixel);
 
 /* by_pixel: samples come by mcr_features_take, a number of their own for each pixel, not by mcr_features_add. NULL when memory is short. */
 struct mcr_features *mcr_features_create(uint64_t pixels, uint32_t asked, int by_pixel);
