@@ -72,8 +72,9 @@ struct mcr_accel {
     struct mcr_accel_shape *shape;            /* in order of their primitive numbers */
     const struct mcr_triangles *triangles;
     /* bvh only */
-    uint32_t plane_count;
-    uint32_t *plane;                          /* shapes without bounds, asked for every ray */
+    uint32_t wide_count;
+    uint32_t *wide;                           /* asked for every ray: shapes, and beyond shape_count triangles; by their numbers */
+    double lo[3], hi[3];                      /* bounds of the tree */
     uint32_t node_count;
     struct mcr_bvh_node *node;                /* the root first */
     unsigned char *packet;                    /* struct mcr_bvh_packet, found by their lines */

@@ -3,8 +3,7 @@
  * The tree of boxes: one ray after the other through it, all children of a node at once and the nearest of them first; at its leaves packets of
  * shapes of one kind, all at once as well. Stage file, compiled once per instruction set.
  */
-#include "accel/isa.h"
-#include "accel/kernels.h"
+#include "accel/block.h"
 
 #define WIDTH MCR_BVH_WIDTH
 
@@ -13,10 +12,12 @@
 #define STACK (LEVELS * WIDTH)
 
 /*
- * Distances to boxes are off by 7 u at most (difference, inverse: 5, product; 1 more for `leave`). What is compared with the nearer side is moved
- * out by more than twice that, which makes the test conservative (Ize, "Robust BVH ray traversal", JCGT 2(2), 2013).
+ * Distances to boxes are off by 7 u at most (difference, inverse: 5, product; 1 more for `leave`). The farther side is moved out by more than twice
+ * that, which makes the test conservative (Ize, "Robust BVH ray traversal", JCGT 2(2), 2013). What is compared with the nearer side and has no
+ * error of its own, a ray's end, is moved out by little more than once that: a ray that ends at a rectangle (core/light.c) ends before its box.
  */
 #define WIDEN (1 + 32 * 0x1p-53)
+#define WIDEN_END (1 + 10 * 0x1p-53)
 
 struct ray {
     double o[3], d[3], inverse[3];
@@ -25,18 +26,20 @@ struct ray {
     struct mcr_shear shear;
 };
 
-/* What a block of rays has in common with the list's: everything that can be done for all of them at once. */
-struct block {
-    _Alignas(64) double inverse[3][MCR_ACCEL_BLOCK];
-    _Alignas(64) double form[9][MCR_ACCEL_BLOCK];  /* struct mcr_shear, where there are triangles */
-    _Alignas(64) double t[MCR_ACCEL_BLOCK];
-    _Alignas(64) double primitive[MCR_ACCEL_BLOCK]; /* whole numbers; -1: nothing met */
-};
-
 struct best {
     double t;
     int64_t primitive;
 };
+
+static inline double least(double a, double b)
+{
+    return a < b ? a : b;
+}
+
+static inline double most(double a, double b)
+{
+    return a > b ? a : b;
+}
 
 /* Where the ray enters each child's box, or +infinity. The inverses are finite and not 0, so nothing is NaN. */
 static inline __attribute__((always_inline)) void enter_boxes(const struct mcr_bvh_node *node, const struct ray *ray, double limit, double *enter)
@@ -130,11 +133,6 @@ static inline __attribute__((always_inline)) void cross_packet(const struct mcr_
     }
 }
 
-static inline double least(double a, double b)
-{
-    return a < b ? a : b;
-}
-
 /* Takes what is nearer than the best so far; of equal ones the lower primitive. Lanes beyond the count repeat the first. */
 static inline __attribute__((always_inline)) void consider(const struct mcr_bvh_packet *packet, const struct ray *ray, struct best *best)
 {
@@ -181,7 +179,7 @@ static inline __attribute__((always_inline)) void traverse(const struct mcr_acce
     stack[0] = (struct waiting){0, 0};
     while (top) {
         struct waiting next = stack[--top];
-        if (!any && next.enter > best->t * WIDEN)
+        if (!any && next.enter > best->t * WIDEN_END)
             continue;
         if (next.child & MCR_BVH_PACKET) {
             consider((const struct mcr_bvh_packet *)(const void *)(accel->packet + (size_t)(next.child ^ MCR_BVH_PACKET) * MCR_BVH_LINE), ray, best);
@@ -190,7 +188,7 @@ static inline __attribute__((always_inline)) void traverse(const struct mcr_acce
             continue;
         }
         const struct mcr_bvh_node *node = &accel->node[next.child];
-        enter_boxes(node, ray, best->t * WIDEN, enter);
+        enter_boxes(node, ray, best->t * WIDEN_END, enter);
         uint32_t bottom = top;
         for (uint32_t i = 0; i < WIDTH; i++) { /* without branches: which boxes are entered is hard to foresee */
             stack[top].enter = enter[i];
@@ -202,55 +200,52 @@ static inline __attribute__((always_inline)) void traverse(const struct mcr_acce
     }
 }
 
-/* The planes, and what the tree needs of each ray, for the rays from `first` on. */
-static void block_begin(const struct mcr_accel *accel, const struct mcr_rays *rays, uint32_t first, uint32_t count, const double *far, struct block *b)
+/* The wide shapes, in order of their numbers; what a ray meets among them is where its way through the tree ends. */
+static inline __attribute__((always_inline)) void block_wide(const struct mcr_accel *accel, struct mcr_block *b)
 {
-    const double *ox = rays->ox + first, *oy = rays->oy + first, *oz = rays->oz + first;
-    const double *dx = rays->dx + first, *dy = rays->dy + first, *dz = rays->dz + first;
-    uint32_t padded = (count + MCR_LANE_PAD - 1) / MCR_LANE_PAD * MCR_LANE_PAD;
-    for (uint32_t i = 0; i < padded; i++) {
-        b->t[i] = far && i < count ? far[first + i] : INFINITY;
-        b->primitive[i] = -1;
-    }
-    MCR_LANES
-    for (uint32_t i = 0; i < padded; i++) {
-        double inverse[3];
-        kernel_inverse(dx[i], dy[i], dz[i], inverse);
-        b->inverse[0][i] = inverse[0];
-        b->inverse[1][i] = inverse[1];
-        b->inverse[2][i] = inverse[2];
-    }
-    if (accel->triangles->count) {
-        MCR_LANES
-        for (uint32_t i = 0; i < padded; i++) {
-            struct mcr_shear s = kernel_shear(dx[i], dy[i], dz[i]);
-            for (int j = 0; j < 3; j++) {
-                b->form[j][i] = s.p[j];
-                b->form[3 + j][i] = s.q[j];
-                b->form[6 + j][i] = s.r[j];
-            }
-        }
-    }
-    for (uint32_t p = 0; p < accel->plane_count; p++) {
-        const struct mcr_accel_shape *plane = &accel->shape[accel->plane[p]];
-        const double k[6] = {plane->k[0], plane->k[1], plane->k[2], plane->k[3], plane->k[4], plane->k[5]}, number = plane->primitive;
-        MCR_LANES
-        for (uint32_t i = 0; i < padded; i++) {
-            double t, was = b->primitive[i], best = b->t[i];
-            int nearer = kernel_plane(k, ox[i], oy[i], oz[i], dx[i], dy[i], dz[i], &t) & (t < best);
-            b->primitive[i] = nearer ? number : was;
-            b->t[i] = nearer ? t : best;
-        }
+    for (uint32_t w = 0; w < accel->wide_count; w++) {
+        uint32_t item = accel->wide[w];
+        if (item < accel->shape_count)
+            block_shape(&accel->shape[item], b);
+        else
+            block_triangle(accel->triangles, item - accel->shape_count, b);
     }
 }
 
-static inline __attribute__((always_inline)) struct best block_ray(const struct mcr_accel *accel, const struct mcr_rays *rays, uint32_t first, uint32_t i, const struct block *b, int any)
+/* Lists the rays that come into the box around the tree before what they have met; with `any`, those that have met nothing. Returns their number. */
+static inline __attribute__((always_inline)) uint32_t block_enter(const struct mcr_accel *accel, const struct mcr_block *b, int any, uint32_t *list)
+{
+    _Alignas(64) double enters[MCR_ACCEL_BLOCK];
+    const double lx = accel->lo[0], ly = accel->lo[1], lz = accel->lo[2], hx = accel->hi[0], hy = accel->hi[1], hz = accel->hi[2];
+    uint32_t count = 0;
+    if (!accel->node_count)
+        return 0;
+    MCR_LANES
+    for (uint32_t i = 0; i < MCR_ACCEL_BLOCK; i++) {
+        double ax = (lx - b->ox[i]) * b->inverse[0][i], bx = (hx - b->ox[i]) * b->inverse[0][i];
+        double ay = (ly - b->oy[i]) * b->inverse[1][i], by = (hy - b->oy[i]) * b->inverse[1][i];
+        double az = (lz - b->oz[i]) * b->inverse[2][i], bz = (hz - b->oz[i]) * b->inverse[2][i];
+        double enter = least(ax, bx), leave = most(ax, bx);
+        enter = most(enter, least(ay, by));
+        leave = least(leave, most(ay, by));
+        enter = most(enter, least(az, bz));
+        leave = least(leave, most(az, bz));
+        enter = enter > 0 ? enter : 0;
+        leave = least(leave * WIDEN, b->t[i] * WIDEN_END);
+        int met = any & (b->primitive[i] >= 0);
+        enters[i] = ((enter <= leave) & !met) ? 1.0 : 0.0;
+    }
+    for (uint32_t i = 0; i < b->count; i++) {
+        list[count] = i;
+        count += enters[i] > 0;
+    }
+    return count;
+}
+
+static inline __attribute__((always_inline)) struct best block_ray(const struct mcr_accel *accel, const struct mcr_block *b, uint32_t i, int any)
 {
     struct best best = {b->t[i], (int64_t)b->primitive[i]};
-    if (!accel->node_count || (any && best.primitive >= 0))
-        return best;
-    uint32_t n = first + i;
-    struct ray ray = {.o = {rays->ox[n], rays->oy[n], rays->oz[n]}, .d = {rays->dx[n], rays->dy[n], rays->dz[n]}};
+    struct ray ray = {.o = {b->ox[i], b->oy[i], b->oz[i]}, .d = {b->dx[i], b->dy[i], b->dz[i]}};
     for (int j = 0; j < 3; j++) {
         ray.inverse[j] = b->inverse[j][i];
         ray.leave[j] = b->inverse[j][i] * WIDEN;
@@ -267,26 +262,38 @@ static inline __attribute__((always_inline)) struct best block_ray(const struct 
 
 void MCR_ISA_NAME(mcr_bvh_closest)(const struct mcr_accel *accel, const struct mcr_rays *rays, double *t, int64_t *primitive)
 {
-    struct block block;
     for (uint32_t first = 0; first < rays->n; first += MCR_ACCEL_BLOCK) {
-        uint32_t count = rays->n - first < MCR_ACCEL_BLOCK ? rays->n - first : MCR_ACCEL_BLOCK;
-        block_begin(accel, rays, first, count, NULL, &block);
-        for (uint32_t i = 0; i < count; i++) {
-            struct best best = block_ray(accel, rays, first, i, &block, 0);
-            t[first + i] = best.t;
-            primitive[first + i] = best.primitive;
+        struct mcr_block b;
+        uint32_t list[MCR_ACCEL_BLOCK];
+        block_begin(accel, rays, first, NULL, 1, &b);
+        block_wide(accel, &b);
+        uint32_t count = block_enter(accel, &b, 0, list);
+        MCR_LANES
+        for (uint32_t i = 0; i < b.count; i++) {
+            t[first + i] = b.t[i];
+            primitive[first + i] = (int64_t)b.primitive[i];
+        }
+        for (uint32_t l = 0; l < count; l++) {
+            struct best best = block_ray(accel, &b, list[l], 0);
+            t[first + list[l]] = best.t;
+            primitive[first + list[l]] = best.primitive;
         }
     }
 }
 
 void MCR_ISA_NAME(mcr_bvh_visible)(const struct mcr_accel *accel, const struct mcr_rays *rays, const double *far, double *visible)
 {
-    struct block block;
     for (uint32_t first = 0; first < rays->n; first += MCR_ACCEL_BLOCK) {
-        uint32_t count = rays->n - first < MCR_ACCEL_BLOCK ? rays->n - first : MCR_ACCEL_BLOCK;
-        block_begin(accel, rays, first, count, far, &block);
-        for (uint32_t i = 0; i < count; i++)
-            visible[first + i] = block_ray(accel, rays, first, i, &block, 1).primitive < 0 ? 1.0 : 0.0;
+        struct mcr_block b;
+        uint32_t list[MCR_ACCEL_BLOCK];
+        block_begin(accel, rays, first, far, 1, &b);
+        block_wide(accel, &b);
+        uint32_t count = block_enter(accel, &b, 1, list);
+        MCR_LANES
+        for (uint32_t i = 0; i < b.count; i++)
+            visible[first + i] = b.primitive[i] < 0 ? 1.0 : 0.0;
+        for (uint32_t l = 0; l < count; l++)
+            visible[first + list[l]] = block_ray(accel, &b, list[l], 1).primitive < 0 ? 1.0 : 0.0;
     }
 }
 

@@ -108,7 +108,7 @@ static void text_accel(FILE *to, const struct mcr_explain_data *data)
     fprintf(to, "accel     %s, %s (auto: list up to %u): %u shapes, %u triangles", mcr_accel_name(data->accel->kind), accel_why(data),
             MCR_ACCEL_LIST_LIMIT, scene->shape_count, scene->triangles.count);
     if (data->accel->kind == MCR_ACCEL_BVH)
-        fprintf(to, ", %u nodes", data->accel->node_count);
+        fprintf(to, ", %u nodes, %u wide shapes beside them", data->accel->node_count, data->accel->wide_count);
     fputs("; ", to);
     text_bytes(to, data->accel_bytes);
     fprintf(to, "; instruction set %s\n", mcr_cpu_isa_name(data->options->isa));
@@ -302,6 +302,7 @@ static void json_loaded(struct mcr_json_writer *json, const struct mcr_explain_d
     mcr_json_unsigned(json, "shapes", scene->shape_count);
     mcr_json_unsigned(json, "triangles", scene->triangles.count);
     mcr_json_unsigned(json, "nodes", data->accel->node_count);
+    mcr_json_unsigned(json, "wide", data->accel->wide_count);
     mcr_json_unsigned(json, "bytes", data->accel_bytes);
     mcr_json_text(json, "instruction_set", mcr_cpu_isa_name(data->options->isa));
     mcr_json_end(json);

@@ -87,6 +87,33 @@ static void add_shapes(struct stage *s, int grid, uint32_t count)
     }
 }
 
+/* What surrounds the others and lies in faces of them: tested for every ray (struct mcr_accel, wide). */
+static void add_walls(struct stage *s, int grid)
+{
+    double turned[3][3] = {{7, 0, 3}, {0, 5, 0}, {-3, 0, 7}}, away = grid ? 4 : 4.5, c[3], e[2][3];
+    for (uint32_t i = 0; i < 4; i++) {
+        uint32_t axis = i % 3;
+        for (uint32_t j = 0; j < 3; j++) {
+            c[j] = j == axis && i < 3 ? away : -away;
+            e[0][j] = j == (axis + 1) % 3 ? 2 * away : 0;
+            e[1][j] = j == (axis + 2) % 3 ? 2 * away : 0;
+        }
+        stage_flat(s, i == 2 ? MCR_SHAPE_DISK : MCR_SHAPE_PARALLELOGRAM, c, e[0], e[1]);
+    }
+    for (int j = 0; j < 3; j++)
+        c[j] = -2;
+    stage_axes(s, MCR_SHAPE_BOX, c, turned);
+    stage_sphere(s, c, 5);
+    for (int t = 0; t < 2; t++) {
+        uint32_t v[3];
+        for (int i = 0; i < 3; i++) {
+            double p[3] = {i == 1 ? away : -away, t ? -away : -3, i == 2 ? away : -away};
+            v[i] = stage_vertex(s, p);
+        }
+        stage_triangle(s, v[0], v[1], v[2]);
+    }
+}
+
 static void aim(struct bundle *b, int grid)
 {
     for (uint32_t i = 0; i < b->n; i++) {
@@ -121,7 +148,7 @@ static void compare(const char *what, struct stage *s, int grid, uint32_t rays)
     double *t = malloc(rays * sizeof *t);
     int64_t *primitive = malloc(rays * sizeof *primitive);
     uint32_t hits = 0, ways = 0;
-    uint32_t wrong = 0, wrong_visible = 0;
+    uint32_t wrong = 0, wrong_visible = 0, wrong_end = 0;
     aim(&b, grid);
     for (uint32_t kind = 0; kind < 2; kind++)
         for (uint32_t isa = 0; isa < 3 && functions_of(isa, kind); isa++, ways++) {
@@ -137,9 +164,18 @@ static void compare(const char *what, struct stage *s, int grid, uint32_t rays)
                 wrong_visible += b.visible[i] != (t[i] < b.far[i] ? 0.0 : 1.0);
             }
         }
+    for (uint32_t i = 0; i < rays; i++) /* to the hit, or to the next number behind it */
+        b.far[i] = i % 2 ? t[i] : nextafter(t[i], INFINITY);
+    for (uint32_t kind = 0; kind < 2; kind++)
+        for (uint32_t isa = 0; isa < 3 && functions_of(isa, kind); isa++) {
+            functions_of(isa, kind)->visible(s->accel[kind], &b.rays, b.far, b.visible);
+            for (uint32_t i = 0; i < rays; i++)
+                wrong_end += b.visible[i] != (t[i] < b.far[i] ? 0.0 : 1.0);
+        }
     ok(wrong == 0 && hits > rays / 100, "%s: %u shapes and %u triangles, %u rays, %u of them hit, %u ways: %u differ", what, s->scene.shape_count,
        s->scene.triangles.count, rays, hits, ways, wrong);
     ok(wrong_visible == 0, "%s: visible means that nothing is hit before: %u differ", what, wrong_visible);
+    ok(wrong_end == 0, "%s: to the last bit: %u differ", what, wrong_end);
     free(t);
     free(primitive);
     bundle_destroy(&b);
@@ -215,5 +251,16 @@ int main(void)
         stage_destroy(s);
     }
     test_ties();
+    for (int grid = 0; grid < 2; grid++) {
+        struct stage *s = stage_create();
+        add_shapes(s, grid, 60);
+        add_walls(s, grid);
+        add_shapes(s, grid, 120);
+        add_triangles(s, grid, 50);
+        stage_ready(s);
+        ok(s->accel[1]->wide_count >= 4 && s->accel[1]->node_count > 0, "a room: %u wide shapes beside %u nodes", s->accel[1]->wide_count, s->accel[1]->node_count);
+        compare(grid ? "a room on a grid" : "a room", s, grid, 20000);
+        stage_destroy(s);
+    }
     return tap_done();
 }
