@@ -18,6 +18,19 @@ double mcr_transfer_decode(uint32_t transfer, double gamma, double encoded)
     return encoded < 0 ? -mcr_pow(-encoded, gamma) : mcr_pow(encoded, gamma);
 }
 
+double *mcr_pixels_table(const struct mcr_pixels *pixels, uint32_t transfer)
+{
+    double *table = pixels->peak ? malloc(((size_t)pixels->peak + 1) * sizeof *table) : NULL;
+    for (uint32_t k = 0; table && k <= pixels->peak; k++) table[k] = mcr_transfer_decode(transfer, pixels->gamma, (double)k / pixels->peak);
+    return table;
+}
+
+double mcr_pixels_linear(const struct mcr_pixels *pixels, uint32_t transfer, const double *table, size_t at)
+{
+    if (pixels->peak) return table[pixels->peak < 256 ? pixels->code[at] : pixels->wide[at]];
+    return transfer == MCR_TRANSFER_LINEAR ? (double)pixels->value[at] : mcr_transfer_decode(transfer, pixels->gamma, pixels->value[at]);
+}
+
 struct mcr_pixels *mcr_pixels_create(uint32_t width, uint32_t height, uint32_t channels, uint32_t peak)
 {
     size_t size = peak == 0 ? sizeof(float) : peak < 256 ? 1 : 2;

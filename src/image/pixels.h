@@ -35,4 +35,9 @@ void mcr_pixels_destroy(struct mcr_pixels *pixels);
 /* Linear light of an encoded number; of any size and sign, as floats may be. */
 double mcr_transfer_decode(uint32_t transfer, double gamma, double encoded);
 
+/* Linear light of the codes 0 .. peak, allocated, the caller's to free. NULL for floats, or when memory is short. */
+double *mcr_pixels_table(const struct mcr_pixels *pixels, uint32_t transfer);
+/* The number at place `at` of the array in linear light. table: of mcr_pixels_table, where there are codes. */
+double mcr_pixels_linear(const struct mcr_pixels *pixels, uint32_t transfer, const double *table, size_t at);
+
 #endif

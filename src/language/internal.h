@@ -100,7 +100,7 @@ struct mcr_parser {
     const char *expected_at;               /* the token before which a ',' was missing */
     uint32_t panic_brackets;               /* '(' that were open when panic was set */
     int item_first;                        /* the item being read began a line */
-    int words;                             /* tuples may hold names without a `let`, and calls */
+    unsigned words;                        /* MCR_WORDS_*: of the block whose setting is read */
     int incomplete;                        /* a text is missing: names may be defined there */
     uint32_t depth, deepest, brackets, include_depth;
     uint64_t total;                        /* bytes read */
@@ -126,7 +126,7 @@ struct mcr_block {
     uint32_t indent;                       /* column of its word, if that began a line; else 0 */
     const struct mcr_file *file;           /* where it was opened */
     uint32_t level;                        /* of its items among the vectors */
-    int has_words;                         /* of its form */
+    unsigned words;                        /* of its form */
     int damaged, closed;                   /* closed: by the parser, as its '}' is missing */
     enum { MCR_AFTER_OTHER, MCR_AFTER_SETTING, MCR_AFTER_ERROR } after; /* what was read last; ERROR: a value that was wrong */
 };

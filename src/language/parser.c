@@ -105,7 +105,7 @@ static void read_setting(struct mcr_parser *parser, struct mcr_block *block, con
         if (parser->token.kind != TOKEN_WORD && parser->token.kind != '}')
             mcr_panic(parser);
     } else {
-        parser->words = block->has_words;
+        parser->words = block->words;
         item.value = mcr_value_read(parser);
         parser->words = 0;
     }
@@ -316,7 +316,7 @@ static void not_closed(struct mcr_parser *parser, const struct mcr_block *block)
 static void read_content(struct mcr_parser *parser, struct mcr_block *parent, const struct mcr_block_form *form, struct mcr_item *item, int opened)
 {
     struct mcr_block block = { .parent = parent, .word = form->word, .inside = form->inside, .open = here(parser), .file = parser->file };
-    block.has_words = form->has_words != 0;
+    block.words = form->words;
     block.indent = parser->item_first ? item->place.column : 0;
     if (!opened) {
         block.open = item->place;

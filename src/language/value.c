@@ -110,7 +110,7 @@ static struct mcr_value brackets(struct mcr_parser *parser)
         struct mcr_value value = mcr_expression(parser);
         if (parser->panic)
             break;
-        if (!parser->words || (value.kind == MCR_VALUE_NAME && value.bound))
+        if (!(parser->words & MCR_WORDS_TUPLES) || (value.kind == MCR_VALUE_NAME && value.bound))
             mcr_plain(parser, &value);
         good &= value.kind != MCR_VALUE_ERROR;
         if (!mcr_vector_add(parser, vector, &value, sizeof value))
@@ -148,8 +148,8 @@ static struct mcr_value named(struct mcr_parser *parser, const struct mcr_token 
         value = (struct mcr_value){ .kind = MCR_VALUE_NUMBER, .place = place, .number = pi, .text = "" };
         return value;
     }
-    if (mcr_is_function(word) && parser->words && mcr_token_is(word, "srgb"))
-        return value; /* `colour srgb` of a texture: what it means is judged by the block */
+    if (mcr_is_function(word) && (parser->words & MCR_WORDS_SRGB) && mcr_token_is(word, "srgb"))
+        return value; /* `colour srgb` of a texture or an environment: what it means is judged by the block */
     if (mcr_is_function(word)) {
         mcr_report(parser->diagnostics, MCR_ERROR, place, "'%s' is a function, expected '(' after it", value.text);
         return mcr_error_value(place);
@@ -350,7 +350,7 @@ struct mcr_value mcr_whole_list_read(struct mcr_parser *parser)
     struct mcr_vector *vector = &parser->values[0];
     int good = 1;
 
-    parser->words = 1;
+    parser->words = MCR_WORDS_ALL;
     for (vector->count = 0;;) {
         struct mcr_value value = mcr_value_read(parser);
         good &= value.kind != MCR_VALUE_ERROR && mcr_vector_add(parser, vector, &value, sizeof value);

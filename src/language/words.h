@@ -15,13 +15,16 @@ enum mcr_inside {
     MCR_INSIDE_STUDY = 32
 };
 
+/* Words as values that are judged by the block, not where they are read: names and calls in tuples; `srgb` alone, which is a function elsewhere. */
+enum { MCR_WORDS_TUPLES = 1, MCR_WORDS_SRGB = 2, MCR_WORDS_ALL = 3 };
+
 struct mcr_block_form {
     const char *word;
     unsigned within;  /* where it may stand */
     unsigned inside;  /* what its content is */
     unsigned has_name, has_kind;
     unsigned is_single; /* a scene has one: where a bracket is missing, this word is outside of any group */
-    unsigned has_words; /* tuples in its settings may hold names and calls */
+    unsigned words;     /* MCR_WORDS_* */
 };
 
 /* The form that `word` opens within `inside`, or NULL: it is a setting there, or nothing. */

@@ -17,6 +17,26 @@ void *mcr_build_alloc(struct mcr_build *build, uint64_t count, size_t size)
     return memory;
 }
 
+void mcr_build_hash(struct mcr_build *build, uint64_t hash)
+{
+    build->scene->hash = (build->scene->hash ^ hash) * 1099511628211u; /* FNV-1a once more */
+}
+
+const char *mcr_build_path(struct mcr_build *build, const char *path, struct mcr_place place)
+{
+    const char *slash = place.source ? strrchr(place.source->name, '/') : NULL;
+    size_t folder = slash ? (size_t)(slash - place.source->name) + 1 : 0, length = strlen(path);
+    char *whole;
+    if (!folder || path[0] == '/')
+        return path;
+    whole = mcr_build_alloc(build, folder + length + 1, 1);
+    if (!whole)
+        return NULL;
+    memcpy(whole, place.source->name, folder);
+    memcpy(whole + folder, path, length + 1);
+    return whole;
+}
+
 /* Counts what a list of items can make at most. Nesting is bounded by the parser (MCR_NESTING_LIMIT). */
 static uint64_t count_shapes(struct mcr_build *build, const struct mcr_item *item, uint32_t count)
 {

@@ -3,6 +3,7 @@
 #ifndef MCR_SCENE_BUILD_H
 #define MCR_SCENE_BUILD_H
 
+#include "image/pixels.h"
 #include "plugin/values.h"
 #include "scene/scene.h"
 #include "scene/transform.h"
@@ -58,6 +59,15 @@ struct mcr_build {
 
 /* Zeroed memory of the scene; NULL after an error that was recorded. */
 void *mcr_build_alloc(struct mcr_build *build, uint64_t count, size_t size);
+
+/* Another picture is another scene: the hash of a file that it holds. */
+void mcr_build_hash(struct mcr_build *build, uint64_t hash);
+
+/*
+ * A file name as seen from the folder of the text that names it, as in `include`; from the current one where an option does, which has no source.
+ * NULL after an error.
+ */
+const char *mcr_build_path(struct mcr_build *build, const char *path, struct mcr_place place);
 
 /* ---- settings.c: which word means what ---- */
 
@@ -146,6 +156,9 @@ const struct mcr_texture *mcr_build_find_texture(struct mcr_build *build, const 
 int mcr_build_is_texture(const struct mcr_build *build, const char *name);
 /* texture_image.c: the settings of one that is a picture. */
 void mcr_build_image(struct mcr_build *build, const struct mcr_settings *settings, struct mcr_texture *texture);
+/* The words of `colour`, of textures and of the environment, and what they make of a file: enum mcr_transfer. */
+enum { MCR_COLOUR_AUTO, MCR_COLOUR_LINEAR, MCR_COLOUR_SRGB };
+uint32_t mcr_build_transfer(uint32_t colour, const struct mcr_pixels *pixels);
 /* After all that may name textures. */
 void mcr_build_unused_textures(struct mcr_build *build);
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Blocks `light NAME KIND { … }`: points, spots, suns and the environment, from text into the camera's frame, in world units. */
-#include "image/image.h"
+#include "image/pixels.h"
 #include "scene/build.h"
 #include "scene/vector.h"
 
@@ -167,65 +167,29 @@ static int build_sun(struct mcr_build *build, const struct mcr_settings *setting
 
 /* ---- The environment ------------------------------------------------------------------------------------------- */
 
-/* The file that a text names, relative to the source it stands in; NULL when memory is short. */
-static const char *path_of(struct mcr_build *build, const struct mcr_value *text)
+/* Decodes the pixels. What is no radiance, negative, infinite or NaN, becomes 0, and a warning says so. */
+static int take_texels(struct mcr_build *build, const struct mcr_pixels *pixels, uint32_t colour, struct mcr_place place, struct mcr_environment *sky)
 {
-    const char *from = text->place.source ? text->place.source->name : "", *slash = strrchr(from, '/');
-    size_t folder = slash && text->text[0] != '/' ? (size_t)(slash - from) + 1 : 0, length = strlen(text->text);
-    char *path = mcr_build_alloc(build, folder + length + 1, 1);
-    if (path) {
-        memcpy(path, from, folder);
-        memcpy(path + folder, text->text, length);
-    }
-    return path;
-}
-
-static int channel_named(const struct mcr_image *image, const char *name)
-{
-    for (uint32_t c = 0; image->name && c < image->channels; c++)
-        if (image->name[c] && strcmp(image->name[c], name) == 0)
-            return (int)c;
-    return -1;
-}
-
-/* Where red, green and blue are in a pixel: by name, or one grey channel for all, or by order. -1: nowhere. */
-static int colour_channels(const struct mcr_image *image, int channel[3])
-{
-    static const char *const colours[] = { "R", "G", "B" };
-    int grey = channel_named(image, "Y"), named = 1;
-    for (int i = 0; i < 3; i++)
-        named &= (channel[i] = channel_named(image, colours[i])) >= 0;
-    if (named)
-        return 0;
-    if (grey < 0 && image->name && image->channels > 1)
-        return -1;
-    for (int i = 0; i < 3; i++)
-        channel[i] = grey >= 0 ? grey : image->channels >= 3 ? i : 0;
-    return 0;
-}
-
-/* Copies the pixels. What is no radiance, negative, infinite or NaN, becomes 0, and a warning says so. */
-static int take_texels(struct mcr_build *build, const struct mcr_image *image, struct mcr_place place, struct mcr_environment *sky)
-{
-    uint64_t count = (uint64_t)image->width * image->height, wrong = 0, first = 0;
-    int channel[3];
-    double *texel;
-    if (colour_channels(image, channel) != 0) {
-        mcr_error(build, place, "the image has neither channels R, G, B nor Y");
-        return -1;
-    }
+    const int32_t channel[3] = { pixels->red, pixels->green, pixels->blue };
+    const uint32_t transfer = mcr_build_transfer(colour, pixels);
+    uint64_t count = (uint64_t)pixels->width * pixels->height, wrong = 0, first = 0;
+    double *texel, *table;
     if (count > MCR_ENVIRONMENT_TEXELS) {
-        mcr_error(build, place, "the image has %u x %u texels, expected at most %llu in all, as 8192 x 4096", image->width, image->height,
+        mcr_error(build, place, "the image has %u x %u texels, expected at most %llu in all, as 8192 x 4096", pixels->width, pixels->height,
                   (unsigned long long)MCR_ENVIRONMENT_TEXELS);
         return -1;
     }
     texel = mcr_build_alloc(build, 3 * count, sizeof *texel);
-    if (!texel)
+    table = mcr_pixels_table(pixels, transfer);
+    if (!texel || (pixels->peak && !table)) {
+        free(table);
+        mcr_error(build, place, "not enough memory for an image of %u x %u", pixels->width, pixels->height);
         return -1;
+    }
     for (uint64_t i = 0; i < count; i++) {
         int bad = 0;
         for (int c = 0; c < 3; c++) {
-            double v = image->data[i * image->channels + (uint32_t)channel[c]];
+            double v = mcr_pixels_linear(pixels, transfer, table, i * pixels->channels + (uint32_t)channel[c]);
             int good = v >= 0 && v <= MCR_EXTENT_LIMIT;
             texel[3 * i + (uint32_t)c] = good ? v : 0;
             bad |= !good;
@@ -233,35 +197,39 @@ static int take_texels(struct mcr_build *build, const struct mcr_image *image, s
         first = bad && !wrong ? i : first;
         wrong += (uint64_t)bad;
     }
+    free(table);
     if (wrong)
         mcr_report(build->diagnostics, MCR_WARNING, place,
                    "%llu texels of the image are negative or not finite and count as 0 there, the first in column %llu, row %llu",
-                   (unsigned long long)wrong, (unsigned long long)(first % image->width), (unsigned long long)(first / image->width));
+                   (unsigned long long)wrong, (unsigned long long)(first % pixels->width), (unsigned long long)(first / pixels->width));
     sky->texel = texel;
-    sky->width = image->width;
-    sky->height = image->height;
+    sky->width = pixels->width;
+    sky->height = pixels->height;
     return 0;
 }
 
 static int read_image(struct mcr_build *build, const struct mcr_settings *settings, struct mcr_environment *sky)
 {
-    const struct mcr_value *text = mcr_value_resolve(settings->value[SKY_IMAGE]);
-    struct mcr_image *image;
+    const struct mcr_value *value = settings->value[SKY_IMAGE], *text = mcr_value_resolve(value);
+    struct mcr_pixels *pixels;
     const char *path;
-    char why[700];
+    double colour = MCR_COLOUR_AUTO;
+    char reason[400];
     int result;
+    mcr_read_number(build, settings, SKY_COLOUR, &colour);
     if (text->kind != MCR_VALUE_STRING)
-        return mcr_wrong_kind(build, settings->value[SKY_IMAGE], "image", settings->of, mcr_word_form(MCR_WORD_TEXT));
-    path = path_of(build, text);
+        return mcr_wrong_kind(build, value, "image", settings->of, mcr_word_form(MCR_WORD_TEXT));
+    path = mcr_build_path(build, text->text, text->place);
     if (!path)
         return -1;
-    image = mcr_image_read(path, why, sizeof why);
-    if (!image) {
-        mcr_error(build, settings->value[SKY_IMAGE]->place, "%s", why);
+    pixels = mcr_pixels_read(path, colour != MCR_COLOUR_AUTO, reason, sizeof reason);
+    if (!pixels) {
+        mcr_error(build, value->place, "cannot read '%s': %s", path, reason);
         return -1;
     }
-    result = take_texels(build, image, settings->value[SKY_IMAGE]->place, sky);
-    mcr_image_destroy(image);
+    mcr_build_hash(build, pixels->hash);
+    result = take_texels(build, pixels, (uint32_t)colour, value->place, sky);
+    mcr_pixels_destroy(pixels);
     return result;
 }
 
@@ -297,10 +265,11 @@ static int read_sky(struct mcr_build *build, const struct mcr_settings *settings
     } else if (which == 2) {
         bad |= read_image(build, settings, sky) != 0;
     }
-    if (which >= 0 && which != 2 && settings->value[SKY_FILTER]) {
-        mcr_error(build, settings->key[SKY_FILTER], "'filter' is for an 'image', which is not given");
-        bad = 1;
-    }
+    for (uint32_t i = SKY_FILTER; i <= SKY_COLOUR; i++)
+        if (which >= 0 && which != 2 && settings->value[i]) {
+            mcr_error(build, settings->key[i], "'%s' is for an 'image', which is not given", name_of(settings, i));
+            bad = 1;
+        }
     bad |= mcr_read_number(build, settings, SKY_FILTER, &number) < 0;
     sky->bilinear = number == 1;
     sky->scale = 1;

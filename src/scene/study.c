@@ -200,22 +200,6 @@ static void read_baseline(struct mcr_build *build, const struct mcr_settings *se
 
 /* ---- the reference ---- */
 
-/* A file name as seen from the scene's folder where the scene names it, as in `include`; from the current one where an option does. */
-static const char *beside(struct mcr_build *build, const char *path, struct mcr_place place)
-{
-    const char *slash = place.source ? strrchr(place.source->name, '/') : NULL;
-    size_t folder = slash ? (size_t)(slash - place.source->name) + 1 : 0, length = strlen(path);
-    char *whole;
-    if (!folder || path[0] == '/')
-        return path;
-    whole = mcr_build_alloc(build, folder + length + 1, 1);
-    if (!whole)
-        return NULL;
-    memcpy(whole, place.source->name, folder);
-    memcpy(whole + folder, path, length + 1);
-    return whole;
-}
-
 static void read_reference(struct mcr_build *build, const struct mcr_item *block, struct mcr_scene_study *study)
 {
     static const struct mcr_item none = { .is_block = 1, .word = "reference" };
@@ -249,7 +233,7 @@ static void read_reference(struct mcr_build *build, const struct mcr_item *block
     study->reference_image = read_text(build, settings, REFERENCE_IMAGE);
     if (!study->reference_image)
         return;
-    study->reference_image = beside(build, study->reference_image, settings->value[REFERENCE_IMAGE]->place);
+    study->reference_image = mcr_build_path(build, study->reference_image, settings->value[REFERENCE_IMAGE]->place);
     for (uint32_t i = 0; i < REFERENCE_IMAGE; i++)
         if (settings->value[i])
             mcr_error(build, settings->value[i]->place, "'%s' of 'reference' says how it is rendered, but it is a file: expected one of the two",

@@ -6,7 +6,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { COLOUR_AUTO, COLOUR_LINEAR, COLOUR_SRGB }; /* auto|linear|srgb */
 enum { CHANNEL_AUTO, CHANNEL_RED, CHANNEL_GREEN, CHANNEL_BLUE, CHANNEL_ALPHA, CHANNEL_LUMINANCE };
 
 /* What the settings say of the numbers. */
@@ -54,13 +53,10 @@ static void read_wrap(struct mcr_build *build, const struct mcr_settings *settin
     }
 }
 
-/* The path of the file: relative to the folder of the text that names it. NULL after an error. */
+/* The path of the file; NULL after an error. */
 static const char *path_of(struct mcr_build *build, const struct mcr_settings *settings)
 {
     const struct mcr_value *value = settings->value[IMAGE_FILE], *text = value ? mcr_value_resolve(value) : NULL;
-    const char *from, *slash;
-    size_t folder, length;
-    char *path;
     if (!text)
         return NULL; /* told as missing */
     if (text->kind != MCR_VALUE_STRING) {
@@ -71,16 +67,7 @@ static const char *path_of(struct mcr_build *build, const struct mcr_settings *s
         mcr_error(build, value->place, "'file' of '%s' is empty", settings->of);
         return NULL;
     }
-    from = text->place.source ? text->place.source->name : "";
-    slash = strrchr(from, '/');
-    folder = text->text[0] == '/' || !slash ? 0 : (size_t)(slash - from) + 1;
-    length = strlen(text->text);
-    path = mcr_build_alloc(build, folder + length + 1, 1);
-    if (!path)
-        return NULL;
-    memcpy(path, from, folder);
-    memcpy(path + folder, text->text, length);
-    return path;
+    return mcr_build_path(build, text->text, text->place);
 }
 
 /* Which channels, and how they are decoded; -1 after an error. */
@@ -90,10 +77,9 @@ static int read_reading(struct mcr_build *build, const struct mcr_settings *sett
     uint32_t colour = asked.colour, channel = asked.channel;
     uint32_t rgb[3] = { (uint32_t)pixels->red, (uint32_t)pixels->green, (uint32_t)pixels->blue };
     int grey = rgb[0] == rgb[1] && rgb[1] == rgb[2];
-    *reading = (struct mcr_texture_reading){ .transfer = pixels->transfer, .gamma = pixels->gamma, .channels = grey ? 1 : 3,
+    *reading = (struct mcr_texture_reading){ .channels = grey ? 1 : 3,
                                              .channel = { rgb[0], rgb[1], rgb[2] } };
-    if (colour != COLOUR_AUTO)
-        reading->transfer = colour == COLOUR_LINEAR ? MCR_TRANSFER_LINEAR : MCR_TRANSFER_SRGB;
+    reading->transfer = mcr_build_transfer(colour, pixels);
     if (channel == CHANNEL_AUTO)
         return 0;
     reading->channels = 1;
@@ -171,6 +157,11 @@ static void make_levels(struct mcr_build *build, const struct mcr_settings *sett
     build->texture_bytes += bytes;
 }
 
+uint32_t mcr_build_transfer(uint32_t colour, const struct mcr_pixels *pixels)
+{
+    return colour == MCR_COLOUR_AUTO ? pixels->transfer : colour == MCR_COLOUR_LINEAR ? MCR_TRANSFER_LINEAR : MCR_TRANSFER_SRGB;
+}
+
 void mcr_build_image(struct mcr_build *build, const struct mcr_settings *settings, struct mcr_texture *texture)
 {
     const char *path = path_of(build, settings);
@@ -181,12 +172,12 @@ void mcr_build_image(struct mcr_build *build, const struct mcr_settings *setting
     read_wrap(build, settings, texture->image.wrap);
     if (!path)
         return;
-    pixels = mcr_pixels_read(path, asked.colour != COLOUR_AUTO, reason, sizeof reason);
+    pixels = mcr_pixels_read(path, asked.colour != MCR_COLOUR_AUTO, reason, sizeof reason);
     if (!pixels) {
         mcr_error(build, settings->value[IMAGE_FILE]->place, "cannot read '%s': %s", path, reason);
         return;
     }
-    build->scene->hash = (build->scene->hash ^ pixels->hash) * 1099511628211u; /* FNV-1a once more: another picture is another scene */
+    mcr_build_hash(build, pixels->hash);
     make_levels(build, settings, asked, pixels, texture);
     mcr_pixels_destroy(pixels);
 }

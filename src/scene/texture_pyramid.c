@@ -19,14 +19,9 @@ struct rows {
     const float *value;  /* of a level; pixels is NULL */
 };
 
-/* The number at `at` in linear light. */
 static double decoded(const struct rows *rows, size_t at)
 {
-    const struct mcr_pixels *pixels = rows->pixels;
-    if (pixels->peak == 0)
-        return rows->reading->transfer == MCR_TRANSFER_LINEAR ? (double)pixels->value[at]
-                                                              : mcr_transfer_decode(rows->reading->transfer, rows->reading->gamma, pixels->value[at]);
-    return rows->table[pixels->peak < 256 ? pixels->code[at] : pixels->wide[at]];
+    return mcr_pixels_linear(rows->pixels, rows->reading->transfer, rows->table, at);
 }
 
 static void get_row(const struct rows *rows, uint32_t y, double *restrict out)
@@ -165,10 +160,10 @@ uint64_t mcr_texture_room(uint32_t width, uint32_t height, uint32_t channels, in
 /* All linear values of codes; NULL with *failed set without memory, or where there are no codes. */
 static double *decoding(const struct mcr_pixels *pixels, const struct mcr_texture_reading *reading, int *failed)
 {
-    double *table = pixels->peak ? malloc((size_t)(pixels->peak + 1) * sizeof *table) : NULL;
+    double *table = mcr_pixels_table(pixels, reading->transfer);
     *failed = pixels->peak && !table;
     for (uint32_t k = 0; table && k <= pixels->peak; k++)
-        table[k] = (float)mcr_transfer_decode(reading->transfer, reading->gamma, (double)k / pixels->peak); /* what levels hold */
+        table[k] = (float)table[k]; /* what levels hold */
     return table;
 }
 

@@ -9,7 +9,6 @@
 /* What of a file is looked at, and how. */
 struct mcr_texture_reading {
     uint32_t transfer; /* enum mcr_transfer */
-    double gamma;
     uint32_t channels; /* of the texture: 1 or 3 */
     uint32_t channel[3];
     int luminance;     /* one channel, of the three that are named */

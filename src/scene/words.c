@@ -228,6 +228,7 @@ static const struct mcr_parameter environment[] = {
     [SKY_NADIR] = ROW("nadir", MCR_TYPE_COLOUR, 0, "W/(sr m^2)", 0, FAR, 0, 0, 0, "From below; that of the horizon by default."),
     [SKY_IMAGE] = WORD("image", MCR_WORD_TEXT, 0, "Or a file, by longitude and latitude: top row at +y, middle along +z, +x in the left half."),
     [SKY_FILTER] = CHOICE("filter", "nearest|bilinear", "Between the texels of the image."),
+    [SKY_COLOUR] = CHOICE("colour", "auto|linear|srgb", "How the image's numbers are encoded; auto goes by the file."),
     [SKY_SCALE] = ROW("scale", MCR_TYPE_NUMBER, 0, "", 0, FAR, 1, 0, 0, "Factor on all of it."),
 };
 static const struct mcr_parameter group[] = {

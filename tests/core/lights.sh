@@ -142,6 +142,23 @@ texels whole.pgm 7 5 1
 ground '(0.2, 1, 0.3)' '(0.2, 0.5, 0.3)' 'light a environment { image "whole.pgm"   filter bilinear }'
 S 'a white image, bilinear' 1 "$aiming"
 
+# How its numbers are encoded: 188 of 255 is sRGB's word for half of the light, or linear.
+half=$(calculate '((188 / 255 + 0.055) / 1.055) ^ 2.4')
+awk 'BEGIN { print "P2 7 5 255"; for (i = 0; i < 35; i++) print 188 }' >"$TMPDIR/half.pgm"
+for word in '' auto srgb linear; do
+    ground '(0.2, 1, 0.3)' '(0.2, 0.5, 0.3)' "light a environment { image \"half.pgm\"   ${word:+colour $word} }"
+    [ "$word" = linear ] && half=$(calculate '188 / 255')
+    S "numbers of an image, colour ${word:-not said}" "$half" 'cosine;nee'
+done
+hash_of() { sed -n 's/.*"hash": "\(.*\)".*/\1/p' "$TMPDIR/out.json"; }
+render "$TMPDIR/scene.scn" --spp 1
+before=$(hash_of)
+render "$TMPDIR/scene.scn" --spp 1
+check "the same image is the same scene" test -n "$before" -a "$before" = "$(hash_of)"
+sed -i 's/188/187/' "$TMPDIR/half.pgm"
+render "$TMPDIR/scene.scn" --spp 1
+check "another image is another scene" test "$before" != "$(hash_of)"
+
 # Bilinear, turned, with a lamp, suns and points: every sampler finds the same.
 cat >"$TMPDIR/scene.scn" <<'TEXT'
 mcrender 1
