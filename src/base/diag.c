@@ -22,6 +22,7 @@ struct message {
 struct mcr_diagnostics {
     struct mcr_arena *arena;
     struct message *first, *last, *printed; /* printed: the last one that was */
+    const struct mcr_source *last_source;
     const struct mcr_source *shown;         /* whose chain of includes was printed last */
     uint32_t errors, warnings, left_out, left_out_printed;
     int werror, skipping;                   /* skipping: the message before was only counted, and so are its notes */
@@ -67,7 +68,15 @@ const struct mcr_source *mcr_diagnostics_source(struct mcr_diagnostics *diagnost
         source->parent_line = included_from->line;
         source->parent_column = included_from->column;
     }
-    return source->name && source->text ? source : NULL;
+    if (!source->name || !source->text)
+        return NULL;
+    source->earlier = diagnostics->last_source;
+    return diagnostics->last_source = source;
+}
+
+const struct mcr_source *mcr_diagnostics_last_source(const struct mcr_diagnostics *diagnostics)
+{
+    return diagnostics->last_source;
 }
 
 /* Whether the message is kept; counts it. */

@@ -23,6 +23,7 @@ struct mcr_source {
     size_t length;
     const struct mcr_source *parent;     /* the including source, or NULL */
     uint32_t parent_line, parent_column; /* where it was included, 1-based */
+    const struct mcr_source *earlier;    /* the one that was added before it, or NULL */
 };
 
 /* A stretch of one line. source NULL: no place (the command line as a whole). line and column are 1-based; column counts bytes. */
@@ -42,6 +43,8 @@ void mcr_diagnostics_werror(struct mcr_diagnostics *diagnostics, int on);
 /* Takes a copy of name and text. NULL when memory is short. */
 const struct mcr_source *mcr_diagnostics_source(struct mcr_diagnostics *diagnostics, const char *name, const char *text, size_t length,
                                                 const struct mcr_place *included_from);
+/* The one that was added last, or NULL. */
+const struct mcr_source *mcr_diagnostics_last_source(const struct mcr_diagnostics *diagnostics);
 /* Records a message (printf format). A note belongs to the message before it. Past 100 errors the rest is only counted. */
 void mcr_report(struct mcr_diagnostics *diagnostics, enum mcr_severity severity, struct mcr_place place, const char *format, ...)
     __attribute__((format(printf, 4, 5)));

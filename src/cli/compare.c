@@ -2,7 +2,6 @@
 /* mcrender compare IMAGE REFERENCE: how far apart two images are, where, and whether they estimate the same thing. */
 #include <signal.h>
 #include <string.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include "cli/commands.h"
@@ -24,14 +23,6 @@ static int fail(int status, const char *reason)
     return status;
 }
 
-/* Whether a path leads to the regular file that an input is read from. */
-static int is_input(const char *path, const char *input)
-{
-    struct stat out, in;
-    int there = input && !(strcmp(input, "-") ? stat(input, &in) : fstat(STDIN_FILENO, &in));
-    return there && S_ISREG(in.st_mode) && !stat(path, &out) && out.st_dev == in.st_dev && out.st_ino == in.st_ino;
-}
-
 /* Raw values in formats of floating-point numbers, false colours in the others. */
 static int is_coloured(const struct mcr_format *format)
 {
@@ -47,7 +38,7 @@ static int open_maps(struct work *work)
         const char *path = options->map[i];
         const struct mcr_format *format = mcr_format_of_path(path, reason, sizeof reason);
         work->data.map[i] = (struct mcr_compare_map){.path = path, .coloured = format && is_coloured(format), .failed = 1};
-        if (is_input(path, options->image) || is_input(path, options->reference) || is_input(path, options->mask)) {
+        if (mcr_target_is_input(path, options->image) || mcr_target_is_input(path, options->reference) || mcr_target_is_input(path, options->mask)) {
             fprintf(stderr, "mcrender: error: the map '%s' is one of the images\n", path);
             return MCR_EXIT_USAGE;
         }

@@ -2,7 +2,6 @@
 /* mcrender explain SCENE: what is assembled for a scene, why, and what it costs, measured by a small render of the scene itself. */
 #include <math.h>
 #include <string.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include "base/cpu.h"
@@ -120,14 +119,12 @@ static int explain(struct mcr_explain_data *data)
     return status;
 }
 
-/* The report's target must not be the scene. */
-static int open_report(const struct mcr_options *options, struct mcr_target **target)
+static int open_report(const struct mcr_loaded_scene *loaded, const struct mcr_options *options, struct mcr_target **target)
 {
-    struct stat scene, report;
+    const char *input = mcr_input_of(loaded, options, options->report);
     char reason[512];
-    int known = strcmp(options->scene, "-") ? !stat(options->scene, &scene) : !fstat(STDIN_FILENO, &scene);
-    if (known && !stat(options->report, &report) && S_ISREG(report.st_mode) && report.st_dev == scene.st_dev && report.st_ino == scene.st_ino) {
-        fprintf(stderr, "mcrender: error: '%s' is the scene\n", options->report);
+    if (input) {
+        fprintf(stderr, "mcrender: error: '%s' %s\n", options->report, input);
         return MCR_EXIT_USAGE;
     }
     *target = mcr_target_open_text(options->report, reason, sizeof reason);
@@ -145,7 +142,7 @@ int mcr_command_explain(struct mcr_options *options)
     char reason[512];
     int status = mcr_load(&loaded, options);
     if (!status && options->report)
-        status = open_report(options, &target);
+        status = open_report(&loaded, options, &target);
     if (!status)
         status = explain(&data);
     if (!status && !options->quiet && !(options->report && !strcmp(options->report, "-")))

@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include "base/cpu.h"
+#include "image/image.h"
 
 /* What one scene may take of memory, bytes: a stop for hostile files, far above what a scene of 64 MiB of text needs. */
 #define ARENA_LIMIT ((size_t)8 << 30)
@@ -56,6 +57,21 @@ int mcr_load(struct mcr_loaded_scene *loaded, struct mcr_options *options)
     int failed = !loaded->scene || mcr_diagnostics_errors(loaded->diagnostics);
     mcr_print_diagnostics(loaded->diagnostics);
     return failed ? MCR_EXIT_SCENE : MCR_EXIT_DONE;
+}
+
+const char *mcr_input_of(const struct mcr_loaded_scene *loaded, const struct mcr_options *options, const char *path)
+{
+    if (mcr_target_is_input(path, options->scene))
+        return "is the scene";
+    for (const struct mcr_source *source = mcr_diagnostics_last_source(loaded->diagnostics); source; source = source->earlier)
+        if (source->parent && mcr_target_is_input(path, source->name))
+            return "is included by the scene";
+    for (const struct mcr_scene_file *file = loaded->scene->files; file; file = file->earlier)
+        if (mcr_target_is_input(path, file->path))
+            return "is a picture in the scene";
+    if (mcr_target_is_input(path, options->use_map))
+        return "is the map to follow";
+    return NULL;
 }
 
 void mcr_unload(struct mcr_loaded_scene *loaded)

@@ -18,6 +18,9 @@ struct mcr_loaded_scene {
 int mcr_load(struct mcr_loaded_scene *loaded, struct mcr_options *options);
 void mcr_unload(struct mcr_loaded_scene *loaded);
 
+/* What was read that lies in the file `path`, in words: 'is the scene', for messages; NULL: nothing. It must not be written over. */
+const char *mcr_input_of(const struct mcr_loaded_scene *loaded, const struct mcr_options *options, const char *path);
+
 /* Prints what was recorded since the last time. */
 void mcr_print_diagnostics(struct mcr_diagnostics *diagnostics);
 

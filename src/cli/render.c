@@ -2,7 +2,6 @@
 /* mcrender SCENE: parse, build, render, write, report. */
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include "base/cpu.h"
@@ -52,17 +51,12 @@ struct targets {
     uint32_t map; /* the place of the sample map */
 };
 
-static int is_file(const char *path, const struct stat *status)
-{
-    struct stat other;
-    return !stat(path, &other) && S_ISREG(other.st_mode) && other.st_dev == status->st_dev && other.st_ino == status->st_ino;
-}
-
-static int targets_add(struct targets *targets, const char *path, int text, const struct stat *scene)
+static int targets_add(struct targets *targets, const struct mcr_report_data *data, const char *path, int text)
 {
     char reason[512];
-    if (is_file(path, scene)) {
-        fprintf(stderr, "mcrender: error: '%s' is the scene\n", path);
+    const char *input = mcr_input_of(data->loaded, data->options, path);
+    if (input) {
+        fprintf(stderr, "mcrender: error: '%s' %s\n", path, input);
         return MCR_EXIT_USAGE;
     }
     struct mcr_target *target = text ? mcr_target_open_text(path, reason, sizeof reason) : mcr_target_open(path, reason, sizeof reason);
@@ -83,17 +77,21 @@ static int targets_add(struct targets *targets, const char *path, int text, cons
 /* Before the first ray: whoever waits an hour for a picture wants to be able to keep it. */
 static int targets_open(struct targets *targets, const struct mcr_report_data *data)
 {
-    struct stat scene = {0}; /* of standard input, where the scene is that */
+    const struct mcr_film_settings *film = &data->loaded->scene->film;
     int status = MCR_EXIT_DONE;
-    if (strcmp(data->options->scene, "-") ? stat(data->options->scene, &scene) : fstat(STDIN_FILENO, &scene))
-        memset(&scene, 0, sizeof scene); /* gone since it was read */
-    for (uint32_t i = 0; i < data->output_count && !status; i++)
-        status = targets_add(targets, data->output[i].path, 0, &scene);
+    for (uint32_t i = 0; i < data->output_count && !status; i++) {
+        char reason[512];
+        status = targets_add(targets, data, data->output[i].path, 0);
+        if (!status && mcr_target_check_size(targets->target[i], film->x1 - film->x0, film->y1 - film->y0, reason, sizeof reason)) {
+            fprintf(stderr, "mcrender: error: %s\n", reason);
+            status = MCR_EXIT_USAGE;
+        }
+    }
     if (data->options->report && !status)
-        status = targets_add(targets, data->options->report, 1, &scene);
+        status = targets_add(targets, data, data->options->report, 1);
     targets->map = targets->count;
     if (data->options->sample_map && !status)
-        status = targets_add(targets, data->options->sample_map, 0, &scene);
+        status = targets_add(targets, data, data->options->sample_map, 0);
     return status;
 }
 

@@ -227,6 +227,15 @@ static int run_directed(struct render *render, const struct mcr_director *direct
     }
 }
 
+/* As many as were asked for, but not more than there are jobs to hand out, where it is known how many samples there will be. */
+static uint32_t useful_threads(const struct mcr_scene *scene, uint64_t pixels)
+{
+    const struct mcr_render_settings *render = &scene->render;
+    uint32_t threads = render->threads ? render->threads : mcr_cpu_count();
+    uint64_t jobs = pixels * render->spp / MCR_JOB_SLOTS + 1;
+    return mcr_render_in_rounds(render) || jobs > threads ? threads : (uint32_t)jobs;
+}
+
 static int batches_create(struct render *render)
 {
     render->batch = calloc(render->threads, sizeof *render->batch);
@@ -247,7 +256,7 @@ int mcr_render(const struct mcr_scene *scene, const struct mcr_accel *accel, con
     double cpu = mcr_cpu_seconds();
     int status = -1;
     memset(stats, 0, sizeof *stats);
-    render.threads = scene->render.threads ? scene->render.threads : mcr_cpu_count();
+    render.threads = useful_threads(scene, (uint64_t)(film->x1 - film->x0) * (film->y1 - film->y0));
     render.start = mcr_wall_seconds();
     pass->core = &render.core;
     pass->pixels = (uint64_t)(film->x1 - film->x0) * (film->y1 - film->y0);

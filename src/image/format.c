@@ -12,16 +12,17 @@
  * Only formats in this table are ever asked of OpenImageIO, whose other readers we do not trust with files of unknown origin.
  * TIFF holds both: floats unless 8 or 16 bits were asked for.
  */
+#define JPEG_MOST 65500 /* what libjpeg is built for; it ends the process where there are more */
 static const struct mcr_format formats[] = {
-    {"ppm", NULL, MCR_ENCODE_U8, MCR_ENCODE_U8, MCR_ENCODE_U16, 0},
-    {"pfm", NULL, MCR_ENCODE_FLOAT, MCR_ENCODE_FLOAT, MCR_ENCODE_FLOAT, 0},
-    {"exr", "openexr", MCR_ENCODE_FLOAT, MCR_ENCODE_FLOAT, MCR_ENCODE_FLOAT, 1},
-    {"png", "png", MCR_ENCODE_U8, MCR_ENCODE_U8, MCR_ENCODE_U16, 0},
-    {"jpg", "jpeg", MCR_ENCODE_U8, MCR_ENCODE_U8, MCR_ENCODE_U8, 0},
-    {"jpeg", "jpeg", MCR_ENCODE_U8, MCR_ENCODE_U8, MCR_ENCODE_U8, 0},
-    {"tif", "tiff", MCR_ENCODE_FLOAT, MCR_ENCODE_U8, MCR_ENCODE_U16, 0},
-    {"tiff", "tiff", MCR_ENCODE_FLOAT, MCR_ENCODE_U8, MCR_ENCODE_U16, 0},
-    {"hdr", "hdr", MCR_ENCODE_RGBE, MCR_ENCODE_RGBE, MCR_ENCODE_RGBE, 0},
+    {"ppm", NULL, MCR_ENCODE_U8, MCR_ENCODE_U8, MCR_ENCODE_U16, 0, 0},
+    {"pfm", NULL, MCR_ENCODE_FLOAT, MCR_ENCODE_FLOAT, MCR_ENCODE_FLOAT, 0, 0},
+    {"exr", "openexr", MCR_ENCODE_FLOAT, MCR_ENCODE_FLOAT, MCR_ENCODE_FLOAT, 1, 0},
+    {"png", "png", MCR_ENCODE_U8, MCR_ENCODE_U8, MCR_ENCODE_U16, 0, 0},
+    {"jpg", "jpeg", MCR_ENCODE_U8, MCR_ENCODE_U8, MCR_ENCODE_U8, 0, JPEG_MOST},
+    {"jpeg", "jpeg", MCR_ENCODE_U8, MCR_ENCODE_U8, MCR_ENCODE_U8, 0, JPEG_MOST},
+    {"tif", "tiff", MCR_ENCODE_FLOAT, MCR_ENCODE_U8, MCR_ENCODE_U16, 0, 0},
+    {"tiff", "tiff", MCR_ENCODE_FLOAT, MCR_ENCODE_U8, MCR_ENCODE_U16, 0, 0},
+    {"hdr", "hdr", MCR_ENCODE_RGBE, MCR_ENCODE_RGBE, MCR_ENCODE_RGBE, 0, 0},
 };
 #define FORMAT_COUNT (sizeof formats / sizeof formats[0])
 

@@ -20,6 +20,7 @@ struct mcr_format {
     enum mcr_encoding encoding;   /* with bits = 0 */
     enum mcr_encoding bits8, bits16;
     uint32_t all_channels;        /* 1: takes any number of named channels; 0: R, G and B alone, or one grey channel */
+    uint32_t most;                /* columns and rows; 0: as many as there are */
 };
 
 /*

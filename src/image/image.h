@@ -50,6 +50,8 @@ struct mcr_target;
  * Files know no other time than SOURCE_DATE_EPOCH, or now, in UTC. The program ignores SIGPIPE and SIGXFSZ: both become errors here.
  */
 struct mcr_target *mcr_target_open(const char *path, char *error, size_t length);
+/* Whether the target's format holds a picture of so many columns and rows: 0, or -1 with the reason in `error`. */
+int mcr_target_check_size(const struct mcr_target *target, uint32_t width, uint32_t height, char *error, size_t length);
 /* Encodes and writes, checks (fsync, close) and renames. Returns 0, or -1 with result->error set and the old file untouched. Ends the target. */
 int mcr_target_write(struct mcr_target *target, const struct mcr_image *image, const struct mcr_write_options *options,
                      struct mcr_write_result *result);
@@ -58,6 +60,8 @@ struct mcr_target *mcr_target_open_text(const char *path, char *error, size_t le
 int mcr_target_write_text(struct mcr_target *target, const char *text, size_t bytes, char *error, size_t length);
 /* 1 if writing the one would overwrite or mix with the other: the same file, however it was spelt, or the same pipe. */
 int mcr_target_same(const struct mcr_target *a, const struct mcr_target *b);
+/* 1 if `path` leads to the regular file that an input ("-": standard input; NULL: none) is read from. */
+int mcr_target_is_input(const char *path, const char *input);
 /* Gives up a target: nothing is left of it. NULL is allowed. */
 void mcr_target_cancel(struct mcr_target *target);
 

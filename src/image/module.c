@@ -4,6 +4,7 @@
 #endif
 #include "image/module.h"
 
+#include "base/elf.h"
 #include "image/fail.h"
 #include "image/read.h"
 #include "image/srgb.h"
@@ -49,6 +50,10 @@ static void load(void)
     const char *folders = asked && *asked ? asked : MCR_MODULE_DIR;
     if (find(folders, path)) {
         mcr_image_fail(module.error, sizeof module.error, "no oiio.so in %.150s%s", folders, asked && *asked ? " (MCRENDER_MODULE_PATH)" : "");
+        return;
+    }
+    if (mcr_elf_is_cut_off(path)) {
+        mcr_image_fail(module.error, sizeof module.error, "'%.200s' is cut off", path);
         return;
     }
     void *handle = dlopen(path, RTLD_NOW | RTLD_LOCAL);

@@ -166,6 +166,13 @@ int mcr_target_same(const struct mcr_target *a, const struct mcr_target *b)
            !S_ISCHR(of_a.st_mode);
 }
 
+int mcr_target_is_input(const char *path, const char *input)
+{
+    struct stat out, in;
+    int there = input && !(strcmp(input, "-") ? stat(input, &in) : fstat(STDIN_FILENO, &in));
+    return there && S_ISREG(in.st_mode) && !stat(path, &out) && out.st_dev == in.st_dev && out.st_ino == in.st_ino;
+}
+
 void mcr_target_cancel(struct mcr_target *target)
 {
     if (!target) return;
@@ -246,6 +253,20 @@ static int target_write(struct mcr_target *target, const struct content *content
     return target->name ? replace(target, content, error, length) : write_direct(target, content, error, length);
 }
 
+static int check_size(const struct mcr_target *target, uint32_t width, uint32_t height, char *reason, size_t length)
+{
+    uint32_t most = target->format ? target->format->most : 0;
+    if (!most || (width <= most && height <= most)) return 0;
+    return mcr_image_fail(reason, length, "%u x %u is more than .%s holds, %u x %u", width, height, target->format->extension, most, most), -1;
+}
+
+int mcr_target_check_size(const struct mcr_target *target, uint32_t width, uint32_t height, char *error, size_t length)
+{
+    char reason[300];
+    if (!check_size(target, width, height, reason, sizeof reason)) return 0;
+    return mcr_image_fail(error, length, "cannot write '%.200s': %s", target->shown, reason), -1;
+}
+
 int mcr_target_write(struct mcr_target *target, const struct mcr_image *image, const struct mcr_write_options *options,
                      struct mcr_write_result *result)
 {
@@ -254,6 +275,7 @@ int mcr_target_write(struct mcr_target *target, const struct mcr_image *image, c
     struct content content = {.encoder = &encoder, .options = options};
     memset(result, 0, sizeof *result);
     int status = check_options(options, reason, sizeof reason);
+    if (!status) status = check_size(target, image->width, image->height, reason, sizeof reason);
     if (!status) {
         mcr_encoder_init(&encoder, image, target->format, options->bits, options->exposure);
         encoder.tone = options->tone;

@@ -8,6 +8,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
+#include "base/elf.h"
 #include "plugin/values.h"
 
 #ifndef MCR_PLUGIN_DIR
@@ -98,6 +99,10 @@ static const struct mcr_plugin *open_plugin(struct mcr_registry *registry, const
 
     if (!exists(path, &status)) {
         mcr_report(registry->diagnostics, severity, place, "no plugin file '%s'", path);
+        return NULL;
+    }
+    if (mcr_elf_is_cut_off(path)) {
+        mcr_report(registry->diagnostics, severity, place, "plugin '%s' cannot be loaded: the file is cut off", path);
         return NULL;
     }
     handle = dlopen(path, RTLD_NOW | RTLD_LOCAL);
@@ -245,7 +250,14 @@ void mcr_registry_destroy(struct mcr_registry *registry)
 
 /* ---- words ---- */
 
-/* The words of WORD.so in a folder, sorted: malloc'd strings added to list[*count..]. */
+static int is_regular(DIR *directory, const char *name)
+{
+    struct stat status;
+
+    return fstatat(dirfd(directory), name, &status, 0) == 0 && S_ISREG(status.st_mode);
+}
+
+/* The words of the files WORD.so in a folder: malloc'd strings added to list[*count..]. */
 static void list_folder(const char *folder, char **list, uint32_t *count)
 {
     DIR *directory = opendir(folder);
@@ -255,7 +267,7 @@ static void list_folder(const char *folder, char **list, uint32_t *count)
         size_t length = strlen(entry->d_name);
 
         if (length > 3 && !strcmp(entry->d_name + length - 3, ".so") && mcr_word_valid(entry->d_name, length - 3) &&
-            (list[*count] = strndup(entry->d_name, length - 3)))
+            is_regular(directory, entry->d_name) && (list[*count] = strndup(entry->d_name, length - 3)))
             ++*count;
     }
     if (directory)

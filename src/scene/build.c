@@ -17,8 +17,13 @@ void *mcr_build_alloc(struct mcr_build *build, uint64_t count, size_t size)
     return memory;
 }
 
-void mcr_build_hash(struct mcr_build *build, uint64_t hash)
+void mcr_build_file(struct mcr_build *build, const char *path, uint64_t hash)
 {
+    struct mcr_scene_file *file = mcr_build_alloc(build, 1, sizeof *file);
+    if (file) {
+        *file = (struct mcr_scene_file){ path, build->scene->files };
+        build->scene->files = file;
+    }
     build->scene->hash = (build->scene->hash ^ hash) * 1099511628211u; /* FNV-1a once more */
 }
 

@@ -51,7 +51,8 @@ struct mcr_build {
 
     const struct mcr_value *sampler;       /* expression, or NULL */
     uint32_t replicates;                   /* as set, 0 if not */
-    struct mcr_place replicates_place, compat_place;
+    struct mcr_place replicates_place, compat_place, floor_place;
+    int floor_said;                        /* the floor of `adaptive` is not the default one */
     struct mcr_place camera_place;
 };
 
@@ -60,8 +61,8 @@ struct mcr_build {
 /* Zeroed memory of the scene; NULL after an error that was recorded. */
 void *mcr_build_alloc(struct mcr_build *build, uint64_t count, size_t size);
 
-/* Another picture is another scene: the hash of a file that it holds. */
-void mcr_build_hash(struct mcr_build *build, uint64_t hash);
+/* A picture was read, whose bytes have this hash: another picture is another scene. */
+void mcr_build_file(struct mcr_build *build, const char *path, uint64_t hash);
 
 /*
  * A file name as seen from the folder of the text that names it, as in `include`; from the current one where an option does, which has no source.

@@ -227,7 +227,7 @@ static int read_image(struct mcr_build *build, const struct mcr_settings *settin
         mcr_error(build, value->place, "cannot read '%s': %s", path, reason);
         return -1;
     }
-    mcr_build_hash(build, pixels->hash);
+    mcr_build_file(build, path, pixels->hash);
     result = take_texels(build, pixels, (uint32_t)colour, value->place, sky);
     mcr_pixels_destroy(pixels);
     return result;

@@ -42,7 +42,9 @@ static void read_adaptive(struct mcr_build *build, const struct mcr_settings *se
     }
     render->adaptive = 1;
     mcr_settings_match_call(build, value, &mcr_adaptive_word, &arguments);
-    if (mcr_read_number(build, &arguments, 0, &floor) == 0)
+    build->floor_said = mcr_read_number(build, &arguments, 0, &floor) == 0;
+    build->floor_place = value->place;
+    if (build->floor_said)
         render->floor = (uint32_t)floor;
 }
 
@@ -112,8 +114,11 @@ static void override_rules(struct mcr_build *build)
         render->target_error = over->target_error;
     if (over->has_adaptive)
         render->adaptive = over->adaptive;
-    if (over->has_floor)
+    if (over->has_floor) {
         render->floor = over->floor;
+        build->floor_said = 1;
+        build->floor_place = (struct mcr_place){ 0 };
+    }
     if (over->has_round)
         render->round = over->round;
     render->mapped = over->mapped;
@@ -134,8 +139,12 @@ static void settle_rules(struct mcr_build *build, const struct mcr_settings *set
     int above = over && ((over->has_time && over->time > 0) || (over->has_target_error && over->target_error > 0));
     int said = (over && over->has_spp) || (settings->value[RENDER_SPP] && !above), open = render->time > 0 || render->target_error > 0;
     render->least_rounds = build->replicates ? build->replicates : 1;
-    if (!mcr_render_in_rounds(render))
+    if (!mcr_render_in_rounds(render)) {
+        if (round || (over && over->has_round))
+            mcr_error(build, over && over->has_round ? (struct mcr_place){ 0 } : settings->key[RENDER_ROUND],
+                      "'round' is for rounds of samples: with time, target_error, adaptive or a map to follow, none of which is given");
         return;
+    }
     render->limit = !render->mapped && (said || !open) ? render->spp : 0;
     if (render->limit && render->limit < render->round && !round && !(over && over->has_round))
         render->round = render->limit; /* nobody asked for more */
@@ -143,6 +152,11 @@ static void settle_rules(struct mcr_build *build, const struct mcr_settings *set
         mcr_error(build, place, "a round of %u samples cannot be cut into cells of 16, expected up to 16, or a multiple of 16", render->round);
     if (!render->limit)
         return;
+    if (render->adaptive && render->floor > render->limit) {
+        if (build->floor_said)
+            mcr_error(build, build->floor_place, "'floor' of 'adaptive' is %u samples of every pixel, but spp is %u in the mean", render->floor, render->limit);
+        render->floor = render->limit; /* the default one gives way */
+    }
     if (render->limit < render->round)
         mcr_error(build, place, "spp %u is less than one round of %u samples, expected a smaller 'round' (--round)", render->limit, render->round);
     else if (render->limit / render->round < render->least_rounds)

@@ -169,9 +169,16 @@ static inline int mcr_render_in_rounds(const struct mcr_render_settings *render)
     return render->time > 0 || render->target_error > 0 || render->adaptive || render->mapped;
 }
 
+/* A picture that the scene was read from beside its texts. */
+struct mcr_scene_file {
+    const char *path;
+    const struct mcr_scene_file *earlier;
+};
+
 struct mcr_scene {
     struct mcr_arena *arena;
     const char *path;
+    const struct mcr_scene_file *files; /* the last one, or NULL */
     uint64_t hash;
     double scale;                /* render length = world length * scale */
     struct mcr_camera camera;

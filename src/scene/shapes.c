@@ -169,7 +169,15 @@ static int read_box(struct mcr_build *build, const struct mcr_settings *settings
             mcr_error(build, settings->place, "'box' needs 'size', or 'min' and 'max'");
         return -1;
     }
-    return mcr_read_vector(build, settings, BOX_CORNER, corner) < 0 || mcr_read_vector(build, settings, BOX_SIZE, size) != 0 ? -1 : 0;
+    if (mcr_read_vector(build, settings, BOX_CORNER, corner) < 0 || mcr_read_vector(build, settings, BOX_SIZE, size) != 0)
+        return -1;
+    for (int i = 0; i < 3; i++)
+        if (corner[i] + size[i] == corner[i]) {
+            mcr_error(build, value[BOX_SIZE]->place, "'size' of 'box' is lost beside its corner along %c: %.10g + %.10g is %.10g", "xyz"[i], corner[i],
+                      size[i], corner[i]);
+            return -1;
+        }
+    return 0;
 }
 
 static void build_box(struct mcr_build *build, const struct mcr_settings *settings, const struct mcr_transform *transform,

@@ -177,7 +177,7 @@ void mcr_build_image(struct mcr_build *build, const struct mcr_settings *setting
         mcr_error(build, settings->value[IMAGE_FILE]->place, "cannot read '%s': %s", path, reason);
         return;
     }
-    mcr_build_hash(build, pixels->hash);
+    mcr_build_file(build, path, pixels->hash);
     make_levels(build, settings, asked, pixels, texture);
     mcr_pixels_destroy(pixels);
 }

@@ -26,7 +26,8 @@ sets "the scene's" batch 24
 sets replaced spp 7 --spp 7
 sets replaced depth 0 --depth 0
 sets replaced seed 9007199254740992 --seed 9007199254740992
-sets replaced threads 2 --threads 2
+sets replaced threads 2 --threads 2 --spp 128
+sets replaced threads 1 --threads 999
 sets replaced sampler 'mixture(uniform 2, cosine 1)' --sampler 'mixture(uniform 2, cosine 1)'
 sets replaced width 20 --size 20x10
 sets replaced height 10 --size 20x10

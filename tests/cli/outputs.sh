@@ -89,6 +89,31 @@ ends "the scene is no output" 2 "'scene.ppm' is the scene"
 run scene.ppm --quiet -o other.ppm --report sub/../scene.ppm
 ends "the scene is no report" 2 "is the scene"
 check "the scene is untouched" cmp scene.ppm glow.scn
+printf 'P6\n4 4\n255\n' >texels.ppm
+head -c 48 /dev/zero | tr '\0' 'd' >>texels.ppm
+cp texels.ppm texels
+{ sed '/^sphere/d' glow.scn; echo 'texture t image { file "texels.ppm" }  material t lambert { albedo t }  sphere { center (0, 0, 0)   radius 1   material t }'
+  echo 'light sky environment { image "sky.ppm" }  include "part.scn"'; } >reads.scn
+cp texels.ppm sky.ppm
+echo 'light p point { position (0, 5, 5)   intensity 1 }' >part.scn
+cp part.scn part
+run reads.scn --quiet -o other.ppm
+ends "a scene that reads files" 0
+for input in texels.ppm sky.ppm; do
+    run reads.scn --quiet -o "sub/../$input"
+    ends "a picture in the scene is no output: $input" 2 "'sub/../$input' is a picture in the scene"
+    run reads.scn --quiet -o other.ppm --report "$input"
+    ends "nor a report" 2 "'$input' is a picture in the scene"
+done
+run reads.scn --quiet -o other.ppm --report part.scn
+ends "an included text is no report" 2 "'part.scn' is included by the scene"
+run glow.scn --quiet --time 1 --spp 16 -o other.ppm --sample-map map.pfm
+ends "a map" 0
+run glow.scn --quiet --use-map map.pfm -o map.pfm
+ends "the map to follow is no output" 2 "'map.pfm' is the map to follow"
+run glow.scn --quiet --use-map map.pfm -o other.ppm --sample-map map.pfm
+ends "nor another map" 2 "'map.pfm' is the map to follow"
+check "what is read is untouched" eval 'cmp texels.ppm texels && cmp sky.ppm texels && cmp part.scn part'
 ln kept.ppm hard.ppm
 run glow.scn --quiet --set glow=1 -o hard.ppm -o kept.ppm
 check "two names of one file become two files" cmp hard.ppm kept.ppm
@@ -119,6 +144,16 @@ for option in -o --report; do
     fails "the second output: $option" "No such file or directory" -o first.ppm $option absent/a.ppm
 done
 fails "an unknown format" "unknown image format '.xyz'" -o a.xyz
+if [ -n "$module" ]; then
+    run glow.scn --quiet --size 65501x1 --spp 1 -o wide.jpg -o narrow.ppm
+    ends "more columns than JPEG has" 2 "cannot write 'wide.jpg': 65501 x 1 is more than .jpg holds"
+    check "nothing is written" test ! -e wide.jpg -a ! -e narrow.ppm
+    run glow.scn --quiet --size 65500x1 --spp 1 -o wide.jpg
+    ends "as many as it has" 0
+    rm -f wide.jpg
+else
+    skip "JPEG of 65500 columns" "OpenImageIO's module is not built"
+fi
 MCRENDER_MODULE_PATH=/nonexistent fails "no module" ".exr needs OpenImageIO" -o a.exr
 if [ "$(id -u)" != 0 ]; then
     chmod a-w folder

@@ -323,11 +323,47 @@ static void test_no_files(void)
     ok(!found && strstr(said, "unknown sampler 'folder'"), "a folder is no plugin");
     free(said);
     found = find("pipe", 0, NULL, &said, path, sizeof path);
-    ok(!found && strstr(said, "unknown sampler 'pipe'"), "a pipe is no plugin, and is not waited for");
+    ok(!found && strstr(said, "unknown sampler 'pipe'") && !strstr(said, "did you mean 'pipe'"), "a pipe is no plugin, and is not waited for");
     free(said);
     found = find("text", 0, NULL, &said, path, sizeof path);
     ok(!found && strstr(said, "cannot be loaded"), "a text is no plugin");
     free(said);
+}
+
+/* What is left of a plugin when it was not copied to its end, for several ends; the whole of it loads. */
+static void test_cut_off(void)
+{
+    static const double parts[] = {0.001, 0.05, 0.3, 0.6, 0.8, 1};
+    static char bytes[1 << 20];
+    char path[700], name[700], *said;
+    size_t size;
+    FILE *file;
+
+    compile("whole", "probe", "");
+    snprintf(name, sizeof name, "%s/whole/probe.so", top);
+    file = fopen(name, "r");
+    size = file ? fread(bytes, 1, sizeof bytes, file) : 0;
+    fclose(file);
+    ok(size > 10000 && size < sizeof bytes, "a plugin of %zu bytes", size);
+    for (uint32_t i = 0; i < sizeof parts / sizeof *parts; i++) {
+        char folder[16];
+        const struct mcr_descriptor *found;
+
+        snprintf(folder, sizeof folder, "cut%u", i);
+        snprintf(name, sizeof name, "%s/%s", top, folder);
+        mkdir(name, 0777);
+        strcat(name, "/probe.so");
+        file = fopen(name, "w");
+        fwrite(bytes, 1, (size_t)(parts[i] * (double)size), file);
+        fclose(file);
+        search(folder, folder);
+        found = find("probe", 0, NULL, &said, path, sizeof path);
+        if (parts[i] < 0.5) /* beyond, all that is loaded may be there: what is missing are symbols for debuggers */
+            ok(!found && strstr(said, "cannot be loaded: the file is cut off"), "%g of a plugin: %s", parts[i], said);
+        else
+            ok(found ? !*said : *said != 0, "%g of a plugin is loaded or told", parts[i]);
+        free(said);
+    }
 }
 
 static void test_sets(void)
@@ -431,6 +467,7 @@ int main(void)
     test_user();
     test_words();
     test_no_files();
+    test_cut_off();
     test_sets();
     test_root("dimensions", "-DTECHNIQUE='t->dimensions = 17'", "this sampler takes 17 numbers at each bounce, expected at most 16");
     test_root("overflow", "-DTECHNIQUE='t->dimensions = 0xffffffffu; t[1] = t[0]; t[1].dimensions = 2; t[1].continues = 0; *n = 2'",
