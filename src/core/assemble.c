@@ -7,6 +7,7 @@
 #include "core/crossing.h"
 #include "core/groups.h"
 #include "core/host.h"
+#include "core/light_lanes.h"
 #include "core/lights.h"
 
 /* Rays in a batch by default: their arrays stay in the second-level cache (measured: `make bench`). */
@@ -43,6 +44,16 @@ static const struct mcr_emitter_functions *lights_of(uint32_t isa)
 #endif
 }
 
+static const struct mcr_light_functions *looks_of(uint32_t isa)
+{
+#if MCR_ISA_COUNT > 1
+    return isa == MCR_ISA_AVX512 ? &mcr_light_functions_isa2 : isa == MCR_ISA_AVX2 ? &mcr_light_functions_isa1 : &mcr_light_functions_isa0;
+#else
+    (void)isa;
+    return &mcr_light_functions_isa0;
+#endif
+}
+
 /* Bytes that the arena has handed out since the last call. */
 static uint64_t since(const struct mcr_arena *arena, size_t *used)
 {
@@ -63,6 +74,7 @@ int mcr_core_init(struct mcr_core *core, struct mcr_arena *arena, const struct m
     core->trace = trace_of(options->isa, accel->kind);
     core->stages = stages_of(options->isa);
     core->lights = lights_of(options->isa);
+    core->looks = looks_of(options->isa);
     core->capacity = scene->render.batch ? (scene->render.batch + MCR_LANE_PAD - 1) / MCR_LANE_PAD * MCR_LANE_PAD : DEFAULT_BATCH;
     core->needs_samples = scene->sampler->source_count > 0;
     core->needs_pixel = (scene->sampler->needs & MCR_NEEDS_PIXEL) != 0;

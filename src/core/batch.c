@@ -60,11 +60,10 @@ static void cut_light(struct cutter *c, struct mcr_light_lanes *l, uint32_t lane
     double **array[] = {&l->own, &l->others, &l->weight, &l->qx, &l->qy, &l->qz, &l->wx,  &l->wy,   &l->wz, &l->distance, &l->density, &l->sum,
                         &l->other, &l->fr,  &l->fg,     &l->fb, &l->ox, &l->oy, &l->oz,  &l->dx,   &l->dy, &l->dz,       &l->far,     &l->seen,
                         &l->px,  &l->py,    &l->pz,     &l->nx, &l->ny, &l->nz, &l->tx,  &l->ty,   &l->tz, &l->side,     &l->lr,      &l->lg,
-                        &l->lb};
+                        &l->lb,  &l->sx,    &l->sy,     &l->sz, &l->mx, &l->my, &l->mz};
     for (size_t i = 0; i < sizeof array / sizeof *array; i++)
         *array[i] = cut(c, lanes, sizeof(double));
     l->emitter = cut(c, lanes, sizeof *l->emitter);
-    l->primitive = cut(c, lanes, sizeof *l->primitive);
     l->hit = cut(c, lanes, sizeof *l->hit);
     l->lane = cut(c, lanes, sizeof *l->lane);
     l->material = cut(c, lanes, sizeof *l->material);

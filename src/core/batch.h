@@ -137,6 +137,7 @@ struct mcr_core {
     const struct mcr_accel *accel;
     const struct mcr_accel_functions *trace;
     const struct mcr_stages *stages;
+    const struct mcr_light_functions *looks;
     struct mcr_emitters *emitters;
     const struct mcr_emitter_functions *lights;
     const struct mcr_sky *sky;      /* NULL: nothing but the background comes from infinitely far */
@@ -252,13 +253,14 @@ struct mcr_light_lanes {
     int32_t *emitter;
     double *qx, *qy, *qz, *wx, *wy, *wz, *distance, *density, *sum, *other;
     double *fr, *fg, *fb;
-    int64_t *primitive;
-    double *ox, *oy, *oz, *dx, *dy, *dz, *far, *seen; /* rays of the look-ups, compact */
+    /* its rays and then its finds, compact: light_lanes.h */
+    double *ox, *oy, *oz, *dx, *dy, *dz, *far, *seen;
+    double *sx, *sy, *sz, *mx, *my, *mz; /* points on what they find, and the unit normals of its front */
     int64_t *hit;
-    uint32_t *lane;
+    uint32_t *lane;                /* point */
     /* points on emitters, compact, of one group */
     double *px, *py, *pz, *nx, *ny, *nz, *tx, *ty, *tz, *side, *lr, *lg, *lb;
-    uint32_t *material, *of;
+    uint32_t *material, *of;       /* find */
 };
 
 /*
