@@ -164,7 +164,7 @@ struct mcr_core {
     int combines;                   /* it has more than one technique */
     int lobes;                      /* some group has mirror-like lobes */
     int32_t control;                /* the technique whose light comes in closed form where it is known, or -1: see control.h */
-    uint8_t *even;                  /* by emitter: whether it can */
+    double (*controllable)[4];      /* by emitter, and one more for none: where it is (MCR_K_C), and its area where it can, else -1 */
     int background;                 /* it is not black, or there is a sky */
     uint32_t features;              /* MCR_FEATURE_*, 0: none */
     uint64_t scratch_bytes;         /* for all nested operations of one thread */

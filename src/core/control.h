@@ -24,7 +24,4 @@ int mcr_control_init(struct mcr_core *core, struct mcr_arena *arena);
 /* At the points of a range: which are controlled, and their unoccluded light. Before the range's look-ups. Returns 0 or a plugin's failure. */
 int32_t mcr_control_add(struct mcr_batch *batch, const struct mcr_range *range);
 
-/* Whether the light of emitter e (or -1) at point k is in its closed form. */
-int mcr_control_holds(const struct mcr_batch *batch, uint32_t k, int32_t e);
-
 #endif

@@ -62,18 +62,6 @@ static struct mcr_emitter_points emitter_points(const struct mcr_light_lanes *l,
 
 /* ---- The two kinds of look-up ---------------------------------------------------------------------------------- */
 
-/*
- * Of controlled light, the points of its own technique that are hidden count, with -f Le / density, and no others: `seen` becomes negative there, and 0
- * where light is seen. The rest is in the closed form.
- */
-static void turn_controlled(struct mcr_batch *batch, uint32_t technique, uint32_t n)
-{
-    struct mcr_light_lanes *l = &batch->light;
-    for (uint32_t i = 0; i < n && batch->core->control >= 0; i++)
-        if (mcr_control_holds(batch, l->lane[i], l->emitter[l->lane[i]]))
-            l->seen[i] = l->seen[i] > 0 || batch->core->control != (int32_t)technique ? 0 : -1;
-}
-
 /* The emitter technique's points that nothing hides; *n finds. */
 static int32_t look_at_points(struct mcr_batch *batch, const struct mcr_range *range, uint32_t technique, uint32_t *n)
 {
@@ -86,7 +74,8 @@ static int32_t look_at_points(struct mcr_batch *batch, const struct mcr_range *r
     if (status)
         return status;
     batch->shadow_rays += *n;
-    turn_controlled(batch, technique, *n);
+    if (core->control >= 0)
+        core->looks->turn(batch, *n, core->control == (int32_t)technique);
     core->looks->see(batch, *n);
     return MCR_OK;
 }
@@ -104,7 +93,8 @@ static int32_t look_along(struct mcr_batch *batch, const struct mcr_range *range
         return status;
     batch->shadow_rays += traced;
     *n = core->looks->find(batch, traced, all);
-    turn_controlled(batch, technique, *n);
+    if (core->control >= 0)
+        core->looks->turn(batch, *n, core->control == (int32_t)technique);
     core->looks->see(batch, *n);
     return MCR_OK;
 }
@@ -198,10 +188,7 @@ int32_t mcr_light_weights(struct mcr_batch *batch)
         batch->running = NULL;
     }
     core->looks->weights(batch);
-    for (uint32_t j = 0; j < batch->rays && core->control >= 0; j++) { /* such light is in its closed form already */
-        uint32_t k = batch->source[j];
-        if (k < batch->points && !(core->lobes && batch->lobe.none[k] == 0) && mcr_control_holds(batch, k, l->emitter[k]))
-            l->weight[j] = 0;
-    }
+    if (core->control >= 0)
+        core->looks->spare(batch);
     return MCR_OK;
 }

@@ -440,4 +440,5 @@ static void weights(struct mcr_batch *batch)
 
 const struct mcr_light_functions MCR_ISA_NAME(mcr_light_functions) = {
     .add = add, .clear = clear, .aim = aim, .see = see, .leave = leave, .find = find, .surfaces = surfaces, .sky = sky, .shed = shed,
-    .hits = hits, .weights = weights};
+    .hits = hits, .weights = weights, .control = MCR_ISA_NAME(mcr_light_control), .turn = MCR_ISA_NAME(mcr_light_turn),
+    .spare = MCR_ISA_NAME(mcr_light_spare)};

@@ -35,7 +35,19 @@ struct mcr_light_functions {
     /* What the rays have hit, by the points that they left; and then the weights of it. */
     void (*hits)(struct mcr_batch *batch);
     void (*weights)(struct mcr_batch *batch);
+    /* With control.h, where f is that toward the normal: which points are controlled, and their unoccluded light, added to the slots. */
+    void (*control)(struct mcr_batch *batch, const struct mcr_range *range);
+    /*
+     * Of controlled light, the points of its own technique (own) that are hidden count, and no others: `seen` becomes negative there, and 0 where it is
+     * seen. What rays have hit of it counts nothing: it is in its closed form already.
+     */
+    void (*turn)(struct mcr_batch *batch, uint32_t n, int own);
+    void (*spare)(struct mcr_batch *batch);
 };
+
+void MCR_ISA_NAME(mcr_light_control)(struct mcr_batch *batch, const struct mcr_range *range);
+void MCR_ISA_NAME(mcr_light_turn)(struct mcr_batch *batch, uint32_t n, int own);
+void MCR_ISA_NAME(mcr_light_spare)(struct mcr_batch *batch);
 
 /* Instruction sets 1 and 2 on x86-64 only. */
 extern const struct mcr_light_functions mcr_light_functions_isa0, mcr_light_functions_isa1, mcr_light_functions_isa2;

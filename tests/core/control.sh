@@ -23,6 +23,9 @@ exact 'S5, 60 degrees' .03125
 receiver scene "$near" 'sphere { center (2 * sin(80), 0, 2 * cos(80))   radius 1   material lamp }'
 sed -i 's/^plane.*/disk { center (0, 0, 0)   normal (0, 0, 1)   radius 0.01   material receiver }/' "$scene"
 exact 'S6, 80 degrees: through the horizon' .054695816445537
+receiver scene "$near" 'quad { corner (1, 0, -1)   u (0, 1, 0)   v (0, 0, 2)   material both }'
+sed -i 's/^plane.*/disk { center (0, 0, 0)   normal (0, 0, 1)   radius 0.01   material receiver }/' "$scene"
+exact 'S3, a wall: through the horizon' .055734197002554
 receiver scene "$near" 'triangle { a (0, 0, 2)   b (1, 0, 2)   c (0, 1, 3)   material both }'
 exact S20 .023717994556414
 
