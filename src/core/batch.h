@@ -47,13 +47,20 @@ struct mcr_paths {
     uint32_t *inside[MCR_INTERIORS]; /* material + 1, in the order of entering, then 0; NULL from core->interiors on */
 };
 
-/* Surface properties by primitive, for gathering. A sphere has radius > 0 and its centre in c; all others are flat (n) but for ellipsoids. */
+/* A primitive's surface, in one cache line, since primitives are looked up at random. All but spheres and ellipsoids are flat. */
+struct mcr_surface {
+    double x, y, z;         /* the normal; of a sphere the centre */
+    double offset;          /* flat: n.c, c a point of it */
+    double radius;          /* of a sphere, else 0 */
+    double reach;           /* max(|c|, R) of the shape: the magnitudes that its hits were computed with */
+    double padding[2];
+};
+
+/* Surface properties by primitive, for gathering. */
 struct mcr_surfaces {
     uint32_t count;
-    double *nx, *ny, *nz, *offset; /* offset: n.c */
-    double *cx, *cy, *cz, *radius; /* used where something is round */
-    int round;
-    double *reach;          /* max(|c|, R) of the shape: the magnitudes that its hits were computed with */
+    int round;              /* there are spheres */
+    struct mcr_surface *surface;
     uint32_t *material;
     uint32_t *zone;         /* of primitive p in zone[p + 1], and of a miss in zone[0]: see sort.c */
     uint32_t *quadric;      /* an ellipsoid's index among the accelerator's shapes, or UINT32_MAX; NULL without ellipsoids */
@@ -62,11 +69,12 @@ struct mcr_surfaces {
 
 /*
  * Surface coordinates, by primitive of a shape; where nothing needs them (needs is 0) there are no tables. On flat shapes
- * u = gu.(p - c) + u0, with the c of struct mcr_surfaces; triangles are computed from their corners.
+ * u = gu.(p - c) + u0; triangles are computed from their corners.
  */
 struct mcr_charts {
     uint32_t needs;         /* MCR_NEEDS_* of the materials of primitives */
     uint32_t count;         /* primitives of shapes */
+    double *c[3];           /* anchor; of round shapes the centre */
     double *gu[3], *gv[3];  /* gradients, 1 / render length; 0 for round shapes */
     double *u0, *v0;
     double (*local)[9];     /* spheres and ellipsoids: rows of the map onto the unit sphere; NULL without them */

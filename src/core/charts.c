@@ -19,6 +19,12 @@ static void dual(const double a[3], const double b[3], double out[3])
         out[j] = out[j] / volume / unit;
 }
 
+static void set_anchor(struct mcr_charts *charts, uint32_t p, const double c[3])
+{
+    for (int j = 0; j < 3; j++)
+        charts->c[j][p] = c[j];
+}
+
 /* A flat primitive whose coordinates at its anchor are (u0, v0) and grow by 1 along du and by 1 along dv. */
 static void set_flat(struct mcr_charts *charts, uint32_t p, const double du[3], const double dv[3], double u0, double v0)
 {
@@ -43,11 +49,13 @@ static void set_box(struct mcr_charts *charts, const struct mcr_shape *shape)
         int u, v, u_down, v_down; /* the edges that u and v run along, and whether backward */
     } face[6] = {{2, 1, 0, 0}, {2, 1, 1, 0}, {0, 2, 0, 0}, {0, 2, 0, 1}, {0, 1, 1, 0}, {0, 1, 0, 0}};
     for (uint32_t f = 0; f < 6; f++) {
-        double du[3], dv[3];
+        double du[3], dv[3], c[3];
         for (int j = 0; j < 3; j++) {
+            c[j] = f % 2 ? shape->c[j] + shape->e[f / 2][j] : shape->c[j];
             du[j] = face[f].u_down ? -shape->e[face[f].u][j] : shape->e[face[f].u][j];
             dv[j] = face[f].v_down ? -shape->e[face[f].v][j] : shape->e[face[f].v][j];
         }
+        set_anchor(charts, shape->primitive + f, c);
         set_flat(charts, shape->primitive + f, du, dv, face[f].u_down, face[f].v_down);
     }
 }
@@ -68,6 +76,7 @@ static void set_shape(struct mcr_charts *charts, const struct mcr_shape *shape, 
 {
     double du[3], dv[3], axis[3][3];
     uint32_t p = shape->primitive;
+    set_anchor(charts, p, shape->c);
     switch (shape->kind) {
     case MCR_SHAPE_PLANE:
         for (int j = 0; j < 3; j++) {
@@ -106,7 +115,8 @@ int mcr_charts_init(struct mcr_core *core, struct mcr_arena *arena)
 {
     const struct mcr_scene *scene = core->scene;
     struct mcr_charts *charts = &core->charts;
-    double **array[] = {&charts->gu[0], &charts->gu[1], &charts->gu[2], &charts->gv[0], &charts->gv[1], &charts->gv[2], &charts->u0, &charts->v0};
+    double **array[] = {&charts->c[0], &charts->c[1], &charts->c[2], &charts->gu[0], &charts->gu[1], &charts->gu[2], &charts->gv[0],
+                        &charts->gv[1], &charts->gv[2], &charts->u0, &charts->v0};
     for (uint32_t p = 0; p < core->surfaces.count; p++)
         charts->needs |= scene->material[core->surfaces.material[p]].needs;
     if (!charts->needs)

@@ -62,6 +62,7 @@ int mcr_crossing_init(struct mcr_core *core, struct mcr_arena *arena)
 void mcr_surface_project(const struct mcr_core *core, int64_t primitive, double q[3], double n[3])
 {
     const struct mcr_surfaces *s = &core->surfaces;
+    const struct mcr_surface *at = &s->surface[primitive];
     double length;
     if (s->quadric && s->quadric[primitive] != UINT32_MAX) {
         const double *m = core->accel->shape[s->quadric[primitive]].k;
@@ -76,20 +77,20 @@ void mcr_surface_project(const struct mcr_core *core, int64_t primitive, double 
             q[j] -= (local[0] * local[0] + local[1] * local[1] + local[2] * local[2] - 1) / (2 * square) * n[j];
             n[j] /= length;
         }
-    } else if (s->radius[primitive] > 0) {
-        const double c[3] = {s->cx[primitive], s->cy[primitive], s->cz[primitive]};
+    } else if (at->radius > 0) {
+        const double c[3] = {at->x, at->y, at->z};
         for (int j = 0; j < 3; j++)
             n[j] = q[j] - c[j];
         length = sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
         for (int j = 0; j < 3; j++) {
             n[j] /= length;
-            q[j] = c[j] + s->radius[primitive] * n[j];
+            q[j] = c[j] + at->radius * n[j];
         }
     } else {
-        n[0] = s->nx[primitive];
-        n[1] = s->ny[primitive];
-        n[2] = s->nz[primitive];
-        double off = n[0] * q[0] + n[1] * q[1] + n[2] * q[2] - s->offset[primitive];
+        n[0] = at->x;
+        n[1] = at->y;
+        n[2] = at->z;
+        double off = n[0] * q[0] + n[1] * q[1] + n[2] * q[2] - at->offset;
         for (int j = 0; j < 3; j++)
             q[j] -= off * n[j];
     }
@@ -306,7 +307,7 @@ static void step_on(struct mcr_batch *batch, const uint32_t *list, uint32_t coun
     struct mcr_crossing_lanes *l = &batch->crossing_lanes;
     for (uint32_t i = 0; i < count; i++) {
         struct mcr_crossing *c = &batch->crossing[list[i]];
-        double reach = core->surfaces.reach[c->hit], advance = 0;
+        double reach = core->surfaces.surface[c->hit].reach, advance = 0;
         for (int j = 0; j < 3; j++)
             reach = mcr_max(reach, mcr_max(fabs(c->q[j]), fabs(c->o[j])));
         pass_through(batch, c);
@@ -585,7 +586,7 @@ void mcr_crossing_camera(struct mcr_core *core)
         for (int j = 0; j < 3; j++)
             q[j] = o[j] + lane[6][0] * d[j];
         mcr_surface_project(core, hit[0], q, n);
-        reach = core->surfaces.reach[hit[0]];
+        reach = core->surfaces.surface[hit[0]].reach;
         double side = n[0] * d[0] + n[1] * d[1] + n[2] * d[2] < 0 ? 1.0 : -1.0;
         for (int j = 0; j < 3; j++)
             reach = mcr_max(reach, mcr_max(fabs(q[j]), fabs(o[j])));

@@ -246,15 +246,7 @@ static void cross(const double a[3], const double b[3], double out[3])
 
 static void set_flat(struct mcr_surfaces *s, uint32_t p, const double c[3], const double n[3], double reach, uint32_t material)
 {
-    s->cx[p] = c[0];
-    s->cy[p] = c[1];
-    s->cz[p] = c[2];
-    s->nx[p] = n[0];
-    s->ny[p] = n[1];
-    s->nz[p] = n[2];
-    s->offset[p] = n[0] * c[0] + n[1] * c[1] + n[2] * c[2];
-    s->radius[p] = 0;
-    s->reach[p] = reach;
+    s->surface[p] = (struct mcr_surface){.x = n[0], .y = n[1], .z = n[2], .offset = n[0] * c[0] + n[1] * c[1] + n[2] * c[2], .reach = reach};
     s->material[p] = material;
 }
 
@@ -285,8 +277,9 @@ static void set_shape(struct mcr_surfaces *s, const struct mcr_shape *shape)
         set_box(s, shape, centre + size);
         break;
     case MCR_SHAPE_SPHERE:
-        set_flat(s, shape->primitive, shape->c, shape->n, centre > shape->radius ? centre : shape->radius, shape->material);
-        s->radius[shape->primitive] = shape->radius;
+        s->surface[shape->primitive] = (struct mcr_surface){.x = shape->c[0], .y = shape->c[1], .z = shape->c[2], .radius = shape->radius,
+                                                            .reach = centre > shape->radius ? centre : shape->radius};
+        s->material[shape->primitive] = shape->material;
         s->round = 1;
         break;
     case MCR_SHAPE_PLANE:
@@ -320,14 +313,11 @@ int mcr_surfaces_init(struct mcr_core *core, struct mcr_arena *arena)
 {
     const struct mcr_scene *scene = core->scene;
     struct mcr_surfaces *s = &core->surfaces;
-    double **array[] = {&s->nx, &s->ny, &s->nz, &s->offset, &s->cx, &s->cy, &s->cz, &s->radius, &s->reach};
     s->count = scene->primitive_count;
-    for (size_t i = 0; i < sizeof array / sizeof *array; i++)
-        if (!(*array[i] = mcr_arena_alloc(arena, s->count, sizeof(double))))
-            return -1;
+    s->surface = mcr_arena_alloc(arena, s->count, sizeof *s->surface);
     s->material = mcr_arena_alloc(arena, s->count, sizeof *s->material);
     s->zone = mcr_arena_alloc(arena, (size_t)s->count + 1, sizeof *s->zone);
-    if (!s->material || !s->zone)
+    if (!s->surface || !s->material || !s->zone)
         return -1;
     for (uint32_t i = 0; i < scene->shape_count; i++) {
         set_shape(s, &scene->shape[i]);

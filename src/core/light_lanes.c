@@ -107,7 +107,7 @@ static void go_along(const struct mcr_batch *batch, uint32_t n)
 /* The points q of the finds, brought onto their primitives as mcr_surface_project does it, and the unit normals there; garbage for the sky's. */
 static inline __attribute__((always_inline)) void project(const struct mcr_batch *batch, uint32_t n, int round)
 {
-    const struct mcr_surfaces *s = &batch->core->surfaces;
+    const struct mcr_surface *s = batch->core->surfaces.surface;
     const struct mcr_light_lanes *l = &batch->light;
     const uint32_t *lane = l->lane;
     const int64_t *hit = l->hit;
@@ -116,11 +116,11 @@ static inline __attribute__((always_inline)) void project(const struct mcr_batch
         uint32_t k = lane[i];
         int64_t m = hit[i] < 0 ? 0 : hit[i];
         double qx = l->qx[k], qy = l->qy[k], qz = l->qz[k];
-        double nx = s->nx[m], ny = s->ny[m], nz = s->nz[m];
-        double off = nx * qx + ny * qy + nz * qz - s->offset[m];
+        double nx = s[m].x, ny = s[m].y, nz = s[m].z;
+        double off = nx * qx + ny * qy + nz * qz - s[m].offset;
         double x = qx - off * nx, y = qy - off * ny, z = qz - off * nz;
         if (round) {
-            double cx = s->cx[m], cy = s->cy[m], cz = s->cz[m], radius = s->radius[m];
+            double cx = s[m].x, cy = s[m].y, cz = s[m].z, radius = s[m].radius;
             double ux = qx - cx, uy = qy - cy, uz = qz - cz, length = sqrt(ux * ux + uy * uy + uz * uz);
             int sphere = radius > 0;
             ux /= length;
@@ -174,7 +174,8 @@ static void project_all(const struct mcr_batch *batch, uint32_t n)
 /* Each ray ends as far before the emitter's surface as it starts off its own; toward the sky it has no end. */
 static inline __attribute__((always_inline)) void end_before(const struct mcr_batch *batch, uint32_t n, int sky)
 {
-    const double *reach_of = batch->core->surfaces.reach, *reach_at = batch->at.reach;
+    const struct mcr_surface *s = batch->core->surfaces.surface;
+    const double *reach_at = batch->at.reach;
     const struct mcr_light_lanes *l = &batch->light;
     const uint32_t *lane = l->lane;
     const int64_t *hit = l->hit;
@@ -183,7 +184,7 @@ static inline __attribute__((always_inline)) void end_before(const struct mcr_ba
         uint32_t k = lane[i];
         int far = hit[i] < 0;
         double wx = l->wx[k], wy = l->wy[k], wz = l->wz[k], mx = l->mx[i], my = l->my[i], mz = l->mz[i];
-        double reach = largest(largest(fabs(l->sx[i]), fabs(l->sy[i])), largest(fabs(l->sz[i]), reach_of[far ? 0 : hit[i]]));
+        double reach = largest(largest(fabs(l->sx[i]), fabs(l->sy[i])), largest(fabs(l->sz[i]), s[far ? 0 : hit[i]].reach));
         reach = MCR_OFFSET * largest(reach, reach_at[k]);
         double off = mx * wx + my * wy + mz * wz < 0 ? reach : -reach;
         double dx = l->sx[i] + off * mx - l->ox[i], dy = l->sy[i] + off * my - l->oy[i], dz = l->sz[i] + off * mz - l->oz[i];

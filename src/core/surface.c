@@ -12,12 +12,12 @@ static inline double largest(double a, double b)
 
 /*
  * The point o + t d is off its surface by a few u of the numbers it was computed with. One step along the normal brings flat shapes back to
- * u * max(|p|, |c|), and spheres are projected from their centre. `round` is constant where this is inlined: without spheres, half of the
- * gathers are not there.
+ * u * max(|p|, |c|), and spheres are projected from their centre. `round` is constant where this is inlined: without spheres, what is
+ * computed for them is not there.
  */
 static inline __attribute__((always_inline)) void points(struct mcr_batch *batch, int round)
 {
-    const struct mcr_surfaces *s = &batch->core->surfaces;
+    const struct mcr_surface *s = batch->core->surfaces.surface;
     const struct mcr_surface_points *at = &batch->at;
     const uint32_t *order = batch->order;
     MCR_LANES
@@ -26,12 +26,12 @@ static inline __attribute__((always_inline)) void points(struct mcr_batch *batch
         int64_t m = batch->hit[j];
         double t = batch->t[j], rx = batch->rox[j], ry = batch->roy[j], rz = batch->roz[j];
         double dx = batch->rdx[j], dy = batch->rdy[j], dz = batch->rdz[j];
-        double nx = s->nx[m], ny = s->ny[m], nz = s->nz[m];
+        double nx = s[m].x, ny = s[m].y, nz = s[m].z;
         double px = rx + t * dx, py = ry + t * dy, pz = rz + t * dz;
-        double off = nx * px + ny * py + nz * pz - s->offset[m];
+        double off = nx * px + ny * py + nz * pz - s[m].offset;
         double x = px - off * nx, y = py - off * ny, z = pz - off * nz;
         if (round) {
-            double cx = s->cx[m], cy = s->cy[m], cz = s->cz[m], radius = s->radius[m];
+            double cx = s[m].x, cy = s[m].y, cz = s[m].z, radius = s[m].radius;
             double qx = px - cx, qy = py - cy, qz = pz - cz;
             double inverse = 1 / sqrt(qx * qx + qy * qy + qz * qz);
             int sphere = radius > 0;
@@ -56,7 +56,7 @@ static inline __attribute__((always_inline)) void points(struct mcr_batch *batch
         at->side[k] = side;
         double reach = largest(largest(fabs(x), fabs(y)), fabs(z));
         reach = largest(reach, largest(largest(fabs(rx), fabs(ry)), fabs(rz)));
-        at->reach[k] = largest(reach, s->reach[m]);
+        at->reach[k] = largest(reach, s[m].reach);
     }
 }
 

@@ -17,13 +17,13 @@
 /* Cosines to the normal below this widen a footprint no further. */
 #define GRAZING 0x1p-10
 
-static void flat_lanes(const struct mcr_surfaces *s, const struct mcr_charts *charts, const struct mcr_chart_lanes *l)
+static void flat_lanes(const struct mcr_charts *charts, const struct mcr_chart_lanes *l)
 {
     const int64_t last = charts->count;
     MCR_LANES
     for (uint32_t i = 0; i < l->n; i++) {
         int64_t p = l->primitive[i] < last ? l->primitive[i] : 0;
-        double x = l->px[i] - s->cx[p], y = l->py[i] - s->cy[p], z = l->pz[i] - s->cz[p];
+        double x = l->px[i] - charts->c[0][p], y = l->py[i] - charts->c[1][p], z = l->pz[i] - charts->c[2][p];
         double ux = charts->gu[0][p], uy = charts->gu[1][p], uz = charts->gu[2][p];
         double vx = charts->gv[0][p], vy = charts->gv[1][p], vz = charts->gv[2][p];
         l->u[i] = ux * x + uy * y + uz * z + charts->u0[p];
@@ -41,11 +41,11 @@ static void flat_lanes(const struct mcr_surfaces *s, const struct mcr_charts *ch
  * Longitude and latitude on the unit sphere: u = 1/2 + atan2(x, z) / 2 pi, v = 1/2 + atan2(y, sqrt(x^2 + z^2)) / pi. On the axis u is 1/2 and has no
  * gradient.
  */
-static void round_lane(const struct mcr_surfaces *s, const struct mcr_charts *charts, const struct mcr_chart_lanes *l, uint32_t i)
+static void round_lane(const struct mcr_charts *charts, const struct mcr_chart_lanes *l, uint32_t i)
 {
     int64_t p = l->primitive[i];
     const double *m = charts->local[p];
-    double q[3] = {l->px[i] - s->cx[p], l->py[i] - s->cy[p], l->pz[i] - s->cz[p]}, at[3], du[3] = {0, 0, 0}, dv[3] = {0, 0, 0};
+    double q[3] = {l->px[i] - charts->c[0][p], l->py[i] - charts->c[1][p], l->pz[i] - charts->c[2][p]}, at[3], du[3] = {0, 0, 0}, dv[3] = {0, 0, 0};
     for (int j = 0; j < 3; j++)
         at[j] = m[3 * j] * q[0] + m[3 * j + 1] * q[1] + m[3 * j + 2] * q[2];
     double square = at[0] * at[0] + at[2] * at[2], rho = sqrt(square), all = square + at[1] * at[1];
@@ -125,11 +125,11 @@ void MCR_ISA_NAME(mcr_stage_chart)(const struct mcr_core *core, const struct mcr
     const struct mcr_charts *charts = &core->charts;
     const struct mcr_triangles *triangles = &core->scene->triangles;
     const struct mcr_surfaces *s = &core->surfaces;
-    flat_lanes(s, charts, lanes);
+    flat_lanes(charts, lanes);
     for (uint32_t i = 0; i < lanes->n && charts->local; i++) {
         int64_t p = lanes->primitive[i];
-        if (s->radius[p] > 0 || (s->quadric && s->quadric[p] != UINT32_MAX))
-            round_lane(s, charts, lanes, i);
+        if (s->surface[p].radius > 0 || (s->quadric && s->quadric[p] != UINT32_MAX))
+            round_lane(charts, lanes, i);
     }
     for (uint32_t i = 0; i < lanes->n && triangles->count; i++)
         if (lanes->primitive[i] >= triangles->first_primitive)
