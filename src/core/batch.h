@@ -418,6 +418,11 @@ struct mcr_stages {
     void (*compact)(struct mcr_batch *batch);
     /* out[i] = table[index[i]] */
     void (*gather)(uint32_t n, const uint32_t *index, const double *table, double *out);
+    /* Chooses lights without extent for the points of a range, among few; `both`: light from behind counts. */
+    void (*point_choose)(struct mcr_batch *batch, const struct mcr_range *range, int both);
+    /* Shadow rays toward them; returns how many. Then adds what comes along those that are `seen`. */
+    uint32_t (*point_aim)(struct mcr_batch *batch, const struct mcr_range *range);
+    void (*point_add)(struct mcr_batch *batch, uint32_t rays);
 };
 
 extern const struct mcr_stages mcr_stages_isa0, mcr_stages_isa1, mcr_stages_isa2;

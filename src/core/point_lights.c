@@ -20,9 +20,6 @@ struct mcr_point_node {
     uint32_t first, count, right; /* right 0: a leaf */
 };
 
-/* What an estimate may be at most, so that sums stay finite. */
-#define MOST_ESTIMATE 1e280
-
 /* ---- The tree -------------------------------------------------------------------------------------------------- */
 
 struct builder {
@@ -186,7 +183,7 @@ static double estimate(const struct mcr_point_lights *all, uint32_t i, const str
     double w[3], distance, share = toward(&all->light[i], at->p, w, &distance);
     if (!at->both && !(share > 0 && at->g[0] * w[0] + at->g[1] * w[1] + at->g[2] * w[2] > 0))
         return 0;
-    return fmin(all->luminance[i] * share, MOST_ESTIMATE);
+    return fmin(all->luminance[i] * share, MCR_MOST_ESTIMATE);
 }
 
 /* By the distance of the box's middle, at least half its diagonal; never 0 where one of its lights counts. */
@@ -202,7 +199,7 @@ static double estimate_node(const struct mcr_point_node *node, const struct spot
     if (!at->both && !(above > 0))
         return 0;
     square = fmax(square, diagonal);
-    return square > 0 ? fmin(node->luminance / square, MOST_ESTIMATE) : MOST_ESTIMATE;
+    return square > 0 ? fmin(node->luminance / square, MCR_MOST_ESTIMATE) : MCR_MOST_ESTIMATE;
 }
 
 /* One candidate after the other takes the place of those before it with its part of the sum; the number is scaled anew each time. */
@@ -230,15 +227,14 @@ static void consider(struct choice *c, uint32_t index, double weight)
 #define TREE UINT32_MAX
 #define NONE (UINT32_MAX - 1)
 
-/* One light, NONE if none counts. *probability is that of the choice. */
+/* One light of many, NONE if none counts. *probability is that of the choice. Few are chosen from in point_lanes.c. */
 static uint32_t choose(const struct mcr_point_lights *all, const struct spot *at, double number, double *probability)
 {
     struct choice c = {number, 0, 0, NONE};
     const struct mcr_point_node *node = all->node;
-    for (uint32_t i = 0; i < (node ? all->suns : all->count); i++)
+    for (uint32_t i = 0; i < all->suns; i++)
         consider(&c, i, estimate(all, i, at));
-    if (node)
-        consider(&c, TREE, estimate_node(node, at));
+    consider(&c, TREE, estimate_node(node, at));
     *probability = c.total > 0 ? c.weight / c.total : 0;
     if (c.index != TREE)
         return c.index;
@@ -262,13 +258,13 @@ static uint32_t choose(const struct mcr_point_lights *all, const struct spot *at
 
 /* ---- At a scattering event ------------------------------------------------------------------------------------- */
 
-static void choose_lights(struct mcr_batch *batch, const struct mcr_range *range)
+/* Where there is a tree, point after point. */
+static void choose_by_tree(struct mcr_batch *batch, const struct mcr_range *range, int both)
 {
     const struct mcr_core *core = batch->core;
     const struct mcr_point_lights *all = core->point_lights;
     const struct mcr_surface_points *at = &batch->at;
     struct mcr_point_lanes *l = &batch->point;
-    int both = (core->scene->material[core->group[range->group].first].traits.does & MCR_MATERIAL_TRANSMITS) != 0;
     for (uint32_t k = range->begin; k < range->end; k++) {
         struct spot spot = {{at->px[k], at->py[k], at->pz[k]}, {at->gx[k], at->gy[k], at->gz[k]}, both};
         double probability, w[3] = {0, 0, 0}, factor = 0;
@@ -292,37 +288,16 @@ static void choose_lights(struct mcr_batch *batch, const struct mcr_range *range
  */
 static int32_t trace(struct mcr_batch *batch, const struct mcr_range *range)
 {
-    const struct mcr_surface_points *at = &batch->at;
-    const struct mcr_paths *paths = &batch->sorted;
     struct mcr_point_lanes *l = &batch->point;
-    uint32_t rays = 0;
-    for (uint32_t k = range->begin; k < range->end; k++) {
-        if (!(l->fr[k] > 0 || l->fg[k] > 0 || l->fb[k] > 0) || (l->er[k] == 0 && l->eg[k] == 0 && l->eb[k] == 0))
-            continue;
-        double off = MCR_OFFSET * at->reach[k];
-        double leave = at->gx[k] * l->wx[k] + at->gy[k] * l->wy[k] + at->gz[k] * l->wz[k] < 0 ? -off : off;
-        l->ox[rays] = at->px[k] + leave * at->gx[k];
-        l->oy[rays] = at->py[k] + leave * at->gy[k];
-        l->oz[rays] = at->pz[k] + leave * at->gz[k];
-        l->dx[rays] = l->wx[k];
-        l->dy[rays] = l->wy[k];
-        l->dz[rays] = l->wz[k];
-        l->length[rays] = l->far[k] - fmax(off, MCR_OFFSET * (l->far[k] < INFINITY ? l->far[k] : 0));
-        l->lane[rays++] = k;
-    }
+    const uint32_t rays = batch->core->stages->point_aim(batch, range);
     struct mcr_rays all = {rays, l->ox, l->oy, l->oz, l->dx, l->dy, l->dz};
     struct mcr_look look = {.rays = all, .lane = l->lane, .far = l->length, .seen = l->seen, .r = l->fr, .g = l->fg, .b = l->fb};
     int32_t status = mcr_look_visible(batch, &look);
-    for (uint32_t i = 0; i < rays && !status; i++) {
-        uint32_t k = l->lane[i], slot = paths->slot[k];
-        if (!(l->seen[i] > 0))
-            continue;
-        batch->slot_r[slot] += paths->r[k] * l->fr[k] * l->er[k];
-        batch->slot_g[slot] += paths->g[k] * l->fg[k] * l->eg[k];
-        batch->slot_b[slot] += paths->b[k] * l->fb[k] * l->eb[k];
-    }
+    if (status)
+        return status;
+    batch->core->stages->point_add(batch, rays);
     batch->shadow_rays += rays;
-    return status;
+    return MCR_OK;
 }
 
 int32_t mcr_point_lights_add(struct mcr_batch *batch, const struct mcr_range *range)
@@ -337,7 +312,11 @@ int32_t mcr_point_lights_add(struct mcr_batch *batch, const struct mcr_range *ra
     int32_t status = mcr_numbers(batch, &batch->sorted, b, range->end, MCR_DIMENSION_LIGHT, 1, &number);
     if (status)
         return status;
-    choose_lights(batch, range);
+    int both = (batch->core->scene->material[batch->core->group[range->group].first].traits.does & MCR_MATERIAL_TRANSMITS) != 0;
+    if (batch->core->point_lights->node)
+        choose_by_tree(batch, range, both);
+    else
+        batch->core->stages->point_choose(batch, range, both);
     status = mcr_group_evaluate(batch, range, &to, &f);
     if (status)
         return status;

@@ -25,6 +25,9 @@ struct mcr_point_lights {
     const struct mcr_point_node *node;   /* NULL: few */
 };
 
+/* What the estimate of a light may be at most, so that sums stay finite. */
+#define MCR_MOST_ESTIMATE 1e280
+
 /* *lights is set to NULL where the scene has none. Returns 0, or -1 when memory is short. */
 int mcr_point_lights_create(struct mcr_arena *arena, const struct mcr_scene *scene, const struct mcr_point_lights **lights);
 

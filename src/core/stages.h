@@ -18,5 +18,8 @@ void MCR_ISA_NAME(mcr_stage_mirror)(struct mcr_batch *batch, const struct mcr_ra
 void MCR_ISA_NAME(mcr_stage_scatter)(struct mcr_batch *batch, const struct mcr_range *range);
 void MCR_ISA_NAME(mcr_stage_compact)(struct mcr_batch *batch);
 void MCR_ISA_NAME(mcr_stage_gather)(uint32_t n, const uint32_t *index, const double *table, double *out);
+void MCR_ISA_NAME(mcr_stage_point_choose)(struct mcr_batch *batch, const struct mcr_range *range, int both);
+uint32_t MCR_ISA_NAME(mcr_stage_point_aim)(struct mcr_batch *batch, const struct mcr_range *range);
+void MCR_ISA_NAME(mcr_stage_point_add)(struct mcr_batch *batch, uint32_t rays);
 
 #endif
