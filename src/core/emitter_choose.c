@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
  * Choosing one of many emitters by descending the tree: at each node a child in proportion to its importance, a bound of what its light
- * brings to the point. Compiled once per instruction set. The eight children of a node lie side by side in a vector; their importances are
- * added one after the other, so that the bits are the same in any width. Drawing and asking for a probability go the same way.
+ * brings to the point. Compiled once per instruction set. All lanes go down a level together, in two passes: the importances of the eight
+ * children of a lane's node lie side by side in a vector; then lanes lie side by side, and each chooses. Sums are formed in one order, so
+ * that the bits are the same in any width. Drawing and asking for a probability go the same way.
  *
  * One number chooses all the way down, stretched at each node to what is left of it. Its 53 bits tell apart emitters whose probability is
  * above about 2^-53, however many levels there are; what is below is drawn too seldom or too often by as little.
@@ -18,29 +19,40 @@
  * What of a surface's far side counts. Light from there matters if the material lets it through, which is not known here: it is chosen
  * seldom where there is light in front as well, but it is chosen.
  */
-#define BEHIND 0.0625
+#define BEHIND 0.0625f
 
 #define LARGEST_NUMBER (1 - 0x1p-53)
 
-/* A point, and the normal of the surface there; `open` is 1 if there is none, else 0. */
+/* A point in a node's frame, and the normal of the surface there; `open` is 1 if there is none, else 0. */
 struct spot {
-    double px, py, pz, nx, ny, nz, open;
+    float px, py, pz, nx, ny, nz, open;
 };
 
-static inline struct spot spot_of(const struct mcr_emitter_lanes *points, uint32_t i)
+static inline double largest_of(double x, double y, double z)
 {
-    struct spot s = {points->px[i], points->py[i], points->pz[i], 0, 0, 0, 1};
+    double ax = fabs(x), ay = fabs(y), az = fabs(z), most = ax > ay ? ax : ay;
+    return most > az ? most : az;
+}
+
+static inline struct spot spot_of(const struct mcr_emitter_lanes *points, uint32_t i, const struct mcr_emitter_bounds *node)
+{
+    double x = points->px[i] - node->origin[0], y = points->py[i] - node->origin[1], z = points->pz[i] - node->origin[2];
+    double far = largest_of(x, y, z), scale = node->scale;
+    if (far * scale > MCR_TREE_FAR)
+        scale = MCR_TREE_FAR / far;
+    struct spot s = {(float)(x * scale), (float)(y * scale), (float)(z * scale), 0, 0, 0, 1};
     if (points->nx) {
-        s.nx = points->nx[i], s.ny = points->ny[i], s.nz = points->nz[i];
-        s.open = s.nx == 0 && s.ny == 0 && s.nz == 0 ? 1 : 0;
+        double nx = points->nx[i], ny = points->ny[i], nz = points->nz[i];
+        s.nx = (float)nx, s.ny = (float)ny, s.nz = (float)nz;
+        s.open = nx == 0 && ny == 0 && nz == 0 ? 1 : 0;
     }
     return s;
 }
 
 /* About the mean of max(0, x) for x that are spread evenly over middle +- half: never 0 where one of them is above 0. */
-static inline double clipped(double middle, double half)
+static inline float clipped(float middle, float half)
 {
-    double part = 0.25 * (middle + half);
+    float part = 0.25f * (middle + half);
     part = part > middle ? part : middle;
     return part > 0 ? part : 0;
 }
@@ -51,28 +63,30 @@ static inline double clipped(double middle, double half)
  * normals has n.(p - q) > 0 only if a.d / |d| + open + lift / |d| > 0; and a part of the ball is in front of the surface only if
  * -n.d / |d| + radius / |d| > 0. Cones wider than a hemisphere's are taken for the more even the wider they are. The distance counts as at
  * least the radius.
+ *
+ * Roundings: the frame's numbers are off by 2^-22 of the frame at most, or if that is more, 2^-22 of the distance (the point, the centre,
+ * their difference, MCR_TREE_FAR), and a cosine by 2^-21 (axis or normal, product, root, division).
  */
 static __attribute__((noinline)) void importances(const struct mcr_emitter_bounds *restrict b, const struct spot *restrict s,
                                                   double *restrict out)
 {
-    const double *restrict cx = b->c[0], *restrict cy = b->c[1], *restrict cz = b->c[2], *restrict radius = b->radius;
-    const double *restrict ax = b->axis[0], *restrict ay = b->axis[1], *restrict az = b->axis[2], *restrict open = b->open;
-    const double *restrict lift = b->lift, *restrict fold = b->fold, *restrict within = b->within, *restrict power = b->power;
-    const double px = s->px, py = s->py, pz = s->pz, nx = s->nx, ny = s->ny, nz = s->nz, least = s->open;
+    const float *restrict cx = b->c[0], *restrict cy = b->c[1], *restrict cz = b->c[2], *restrict radius = b->radius;
+    const float *restrict ax = b->axis[0], *restrict ay = b->axis[1], *restrict az = b->axis[2], *restrict open = b->open;
+    const float *restrict lift = b->lift, *restrict fold = b->fold, *restrict within = b->within, *restrict power = b->power;
+    const float px = s->px, py = s->py, pz = s->pz, nx = s->nx, ny = s->ny, nz = s->nz, least = s->open;
     MCR_LANES
     for (uint32_t i = 0; i < MCR_TREE_WIDTH; i++) {
-        double dx = px - cx[i], dy = py - cy[i], dz = pz - cz[i], square = dx * dx + dy * dy + dz * dz;
-        double near = radius[i] * radius[i], reach = within[i];
+        float dx = px - cx[i], dy = py - cy[i], dz = pz - cz[i], square = dx * dx + dy * dy + dz * dz;
+        float near = radius[i] * radius[i], reach = within[i];
         near = near < square ? square : near;
-        near = near < 1e-280 ? 1e-280 : near > 1e200 ? 1e200 : near;
-        double inverse = 1 / sqrt(near), sine = radius[i] * inverse;
-        double along = (ax[i] * dx + ay[i] * dy + az[i] * dz) * inverse, over = -fold[i] * along;
-        double facing = along > over ? along : over, spread = open[i] + lift[i] * inverse;
-        double faces = -(nx * dx + ny * dy + nz * dz) * inverse;
-        double shines = clipped(facing, spread), front = clipped(faces, sine), back = BEHIND * clipped(-faces, sine);
+        float inverse = 1 / sqrtf(near), sine = radius[i] * inverse + MCR_TREE_GRACE;
+        float along = (ax[i] * dx + ay[i] * dy + az[i] * dz) * inverse, over = -fold[i] * along;
+        float facing = along > over ? along : over, spread = open[i] + lift[i] * inverse;
+        float faces = -(nx * dx + ny * dy + nz * dz) * inverse;
+        float shines = clipped(facing, spread), front = clipped(faces, sine), back = BEHIND * clipped(-faces, sine);
         shines = spread > 1 ? shines + (spread - 1) : shines;
         shines = shines > 1 ? 1 : shines;
-        double lit = front > back ? front : back;
+        float lit = front > back ? front : back;
         lit = lit > least ? lit : least;
         shines = shines > 0 ? shines : 0;
         shines = square <= reach ? shines : 0;
@@ -80,37 +94,61 @@ static __attribute__((noinline)) void importances(const struct mcr_emitter_bound
     }
 }
 
-/*
- * Sums of the importances before each child; the last is their total. In this order, which is shorter to wait for than one after the other,
- * they do not fall: roundings are monotonic.
- */
-static inline void run(const double w[MCR_TREE_WIDTH], double sum[MCR_TREE_WIDTH + 1])
+/* The sum of eight importances, in the order of choose_children. */
+static inline double total_of(const double w[MCR_TREE_WIDTH])
 {
-    double pair = w[0] + w[1], half = pair + (w[2] + w[3]), most = half + (w[4] + w[5]);
-    sum[0] = 0, sum[1] = w[0], sum[2] = pair, sum[3] = pair + w[2];
-    sum[4] = half, sum[5] = half + w[4], sum[6] = most, sum[7] = most + w[6];
-    sum[8] = most + (w[6] + w[7]);
+    return w[0] + w[1] + (w[2] + w[3]) + (w[4] + w[5]) + (w[6] + w[7]);
 }
 
-/* Goes down one level. `number` and `share` are replaced. Returns the child, or INT32_MIN where there is none to choose. */
-static inline int32_t go_down(const struct mcr_emitters *all, int32_t node, const struct spot *spot, double *number, double *share)
+/*
+ * Chooses a child for each lane: slot, -1 where there is none to choose. `number` and `share` are replaced. The sums before each child, in
+ * this order, which is shorter to wait for than one after the other, do not fall: roundings are monotonic.
+ */
+static __attribute__((noinline)) void choose_children(uint32_t n, const double *restrict importance, double *restrict number,
+                                                      double *restrict share, int64_t *restrict slot)
 {
-    double importance[MCR_TREE_WIDTH] __attribute__((aligned(64))), sum[MCR_TREE_WIDTH + 1], total, target;
-    uint32_t child;
-    importances(&all->bounds[node], spot, importance);
-    run(importance, sum);
-    total = sum[MCR_TREE_WIDTH];
-    target = *number * total;
-    target = target < total ? target : total * LARGEST_NUMBER; /* rounded up to it */
-    child = sum[4] <= target ? 4 : 0;
-    child += sum[child + 2] <= target ? 2 : 0;
-    child += sum[child + 1] <= target;
-    if (!(importance[child] > 0)) /* all are 0, or as good as */
-        return INT32_MIN;
-    double rest = (target - sum[child]) / importance[child];
-    *number = rest < LARGEST_NUMBER ? rest : LARGEST_NUMBER;
-    *share *= importance[child] / total;
-    return all->bounds[node].child[child];
+    MCR_LANES
+    for (uint32_t i = 0; i < n; i++) {
+        const double *w = importance + MCR_TREE_WIDTH * (size_t)i;
+        double w0 = w[0], w1 = w[1], w2 = w[2], w3 = w[3], w4 = w[4], w5 = w[5], w6 = w[6], w7 = w[7];
+        double pair = w0 + w1, half = pair + (w2 + w3), most = half + (w4 + w5), total = most + (w6 + w7);
+        double target = number[i] * total, below = total * LARGEST_NUMBER;
+        target = target < total ? target : below; /* rounded up to it */
+        int right = half <= target;
+        double start = right ? half : 0, middle = right ? most : pair;
+        int second = middle <= target;
+        double a0 = right ? w4 : w0, a1 = right ? w5 : w1, b0 = right ? w6 : w2, b1 = right ? w7 : w3;
+        start = second ? middle : start;
+        a0 = second ? b0 : a0, a1 = second ? b1 : a1;
+        double next = start + a0;
+        int last = next <= target;
+        double own = last ? a1 : a0, before = last ? next : start;
+        double rest = (target - before) / own, part = own / total;
+        number[i] = rest < LARGEST_NUMBER ? rest : LARGEST_NUMBER;
+        share[i] *= part;
+        int64_t child = (right ? 4 : 0) + (second ? 2 : 0) + (last ? 1 : 0);
+        slot[i] = own > 0 ? child : -1; /* all are 0, or as good as */
+    }
+}
+
+/* The chosen children become the lanes' nodes; lanes that have come to a leaf, or have nothing to choose, leave. Returns how many go on. */
+static uint32_t descend(const struct mcr_emitters *all, uint32_t count, struct mcr_emitter_descent *d, struct mcr_emitter_scratch *scratch)
+{
+    uint32_t left = 0;
+    for (uint32_t j = 0; j < count; j++) {
+        int32_t i = d->lane[j];
+        int64_t slot = d->slot[j];
+        int32_t child = all->bounds[d->node[j]].child[slot < 0 ? 0 : slot];
+        int none = slot < 0;
+        scratch->chosen[i] = none | (child >= 0) ? -1 : ~child;
+        scratch->share[i] = none ? 0 : d->share[j];
+        d->lane[left] = i;
+        d->node[left] = child;
+        d->number[left] = d->number[j];
+        d->share[left] = d->share[j];
+        left += !none & (child >= 0);
+    }
+    return left;
 }
 
 void MCR_ISA_NAME(mcr_emitter_choose)(const struct mcr_emitters *all, const struct mcr_emitter_lanes *points, const double *restrict number,
@@ -121,42 +159,35 @@ void MCR_ISA_NAME(mcr_emitter_choose)(const struct mcr_emitters *all, const stru
     for (uint32_t i = 0; i < count; i++) {
         double middle = number[i] + 0x1p-54; /* of the interval that the number stands for: 0 is not the least likely of all */
         d->number[i] = middle < LARGEST_NUMBER ? middle : LARGEST_NUMBER;
+        d->share[i] = 1;
         d->node[i] = 0;
-        d->list[i] = (int32_t)i;
-        scratch->share[i] = 1;
-        scratch->chosen[i] = -1;
+        d->lane[i] = (int32_t)i;
     }
     while (count > 0) {
-        uint32_t left = 0;
         for (uint32_t j = 0; j < count; j++) {
-            int32_t i = d->list[j];
-            struct spot spot = spot_of(points, (uint32_t)i);
-            int32_t child = go_down(all, d->node[i], &spot, &d->number[i], &scratch->share[i]);
-            d->node[i] = child;
-            d->list[left] = i;
-            left += child >= 0;
-            scratch->chosen[i] = child < 0 && child != INT32_MIN ? ~child : -1;
+            const struct mcr_emitter_bounds *node = &all->bounds[d->node[j]];
+            struct spot spot = spot_of(points, (uint32_t)d->lane[j], node);
+            importances(node, &spot, d->importance + MCR_TREE_WIDTH * (size_t)j);
         }
-        count = left;
+        choose_children(count, d->importance, d->number, d->share, d->slot);
+        count = descend(all, count, d, scratch);
     }
-    for (uint32_t i = 0; i < points->n; i++)
-        scratch->share[i] = scratch->chosen[i] < 0 ? 0 : scratch->share[i];
 }
 
 double MCR_ISA_NAME(mcr_emitter_chance)(const struct mcr_emitters *all, const struct mcr_emitter_lanes *points, uint32_t i, uint32_t e)
 {
     uint64_t path[MCR_TREE_DEPTH], place = all->place[e];
     uint32_t depth = 0;
-    struct spot spot = spot_of(points, i);
     double share = 1;
     for (; place != MCR_TREE_ROOT; place = all->bounds[place >> 3].place)
         path[depth++] = place;
     while (depth-- > 0 && share > 0) {
-        double importance[MCR_TREE_WIDTH] __attribute__((aligned(64))), sum[MCR_TREE_WIDTH + 1];
-        importances(&all->bounds[path[depth] >> 3], &spot, importance);
-        run(importance, sum);
+        double importance[MCR_TREE_WIDTH] __attribute__((aligned(64)));
+        const struct mcr_emitter_bounds *node = &all->bounds[path[depth] >> 3];
+        struct spot spot = spot_of(points, i, node);
+        importances(node, &spot, importance);
         double own = importance[path[depth] & 7];
-        share = own > 0 ? share * (own / sum[MCR_TREE_WIDTH]) : 0;
+        share = own > 0 ? share * (own / total_of(importance)) : 0;
     }
     return share;
 }
@@ -168,19 +199,20 @@ static double mass_at(const struct mcr_emitters *all, const struct mcr_emitter_l
         double share;
         int32_t node;
     } stack[MCR_TREE_DEPTH * MCR_TREE_WIDTH];
-    struct spot spot = spot_of(points, lane);
     uint32_t depth = 1;
     double mass = 0, seen;
-    const struct mcr_emitter_lanes one = {.n = 1, .px = &spot.px, .py = &spot.py, .pz = &spot.pz, .distance = &seen};
+    const struct mcr_emitter_lanes one = {.n = 1, .px = points->px + lane, .py = points->py + lane, .pz = points->pz + lane,
+                                          .distance = &seen};
     stack[0].share = 1;
     stack[0].node = 0;
     while (depth > 0) {
-        double importance[MCR_TREE_WIDTH] __attribute__((aligned(64))), sum[MCR_TREE_WIDTH + 1], share = stack[--depth].share;
+        double importance[MCR_TREE_WIDTH] __attribute__((aligned(64))), share = stack[--depth].share, total;
         const struct mcr_emitter_bounds *node = &all->bounds[stack[depth].node];
+        struct spot spot = spot_of(points, lane, node);
         importances(node, &spot, importance);
-        run(importance, sum);
+        total = total_of(importance);
         for (uint32_t i = 0; i < node->count; i++) {
-            double part = importance[i] > 0 ? share * (importance[i] / sum[MCR_TREE_WIDTH]) : 0;
+            double part = importance[i] > 0 ? share * (importance[i] / total) : 0;
             if (!(part > 0))
                 continue;
             if (node->child[i] >= 0) {

@@ -71,10 +71,15 @@ struct mcr_emitter_pairs {
     mcr_emitter_row value, share, flag;
 };
 
-/* Lanes on their way down the tree: their nodes, and what is left of the number that chooses. */
+/*
+ * Lanes on their way down the tree, side by side: their nodes, the importances of the eight children, the chosen ones, the probability of
+ * having come there, and what is left of the number that chooses.
+ */
 struct mcr_emitter_descent {
-    mcr_emitter_row number;
-    int32_t node[MCR_EMITTER_BLOCK], list[MCR_EMITTER_BLOCK];
+    double importance[8 * MCR_EMITTER_BLOCK];
+    mcr_emitter_row number, share;
+    int64_t slot[MCR_EMITTER_BLOCK];
+    int32_t node[MCR_EMITTER_BLOCK], lane[MCR_EMITTER_BLOCK];
 };
 
 struct mcr_emitter_scratch {

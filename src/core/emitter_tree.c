@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
  * Building the tree of many emitters: a binary tree first, split where the surface area orientation heuristic of Conty Estevez and Kulla
- * (2018, section 4.4) is least, then wide nodes made of it. O(n log n) time; some 300 bytes an emitter, two thirds of them working memory.
+ * (2018, section 4.4) is least, then wide nodes made of it. O(n log n) time; some 300 bytes an emitter, half of them working memory.
  */
 #include "core/emitter_tree.h"
 #include "core/emitter_lanes.h"
@@ -329,36 +329,59 @@ static struct light light_of(const struct builder *b, uint32_t n)
     return light;
 }
 
-/* alone: the emitter that the child is, or NULL. */
-static void set_child(struct builder *b, uint32_t node, uint32_t slot, const struct light *light, const struct mcr_emitter *alone,
-                      const double *k)
+/* The frame of a wide node that holds the box. */
+static void set_frame(struct mcr_emitter_bounds *to, const struct light *whole)
 {
-    struct mcr_emitter_node *box = &b->node[node];
-    struct mcr_emitter_bounds *to = &b->bounds[node];
-    double half[3], most = 0, along = 0, off = 0, sine, cosine, chord, slack;
+    double extent = 0;
+    int exponent;
     for (int i = 0; i < 3; i++) {
-        box->lo[i][slot] = light->lo[i];
-        box->hi[i][slot] = light->hi[i];
-        to->c[i][slot] = 0.5 * light->lo[i] + 0.5 * light->hi[i];
-        half[i] = 0.5 * light->hi[i] - 0.5 * light->lo[i];
-        most = fmax(most, fabs(to->c[i][slot]) + half[i]);
-        along += fabs(light->axis[i]) * half[i];
-        to->axis[i][slot] = light->axis[i];
+        double half = 0.5 * whole->hi[i] - 0.5 * whole->lo[i];
+        to->origin[i] = 0.5 * whole->lo[i] + 0.5 * whole->hi[i];
+        extent = fmax(extent, half + SLACK * (fabs(to->origin[i]) + half));
     }
-    slack = SLACK * most;
-    double radius = mcr_length(half) + slack;
-    if (alone && alone->kind == MCR_EMITTER_SPHERE)
-        radius = k[MCR_K_RADIUS] + slack;
+    frexp(extent, &exponent);
+    exponent = exponent < -1000 ? -1000 : exponent;
+    to->scale = ldexp(1, -exponent);
+}
+
+/* No ray crosses the boxes of children that there are not. */
+static void set_boxes(struct mcr_emitter_node *to, const struct light light[MCR_TREE_WIDTH])
+{
+    for (uint32_t i = 0; i < MCR_TREE_WIDTH; i++)
+        for (int a = 0; a < 3; a++) {
+            to->lo[a][i] = i < to->count ? light[i].lo[a] : INFINITY;
+            to->hi[a][i] = i < to->count ? light[i].hi[a] : -INFINITY;
+        }
+}
+
+/* alone: the emitter that the child is, or NULL. most: the largest power of the node's children. */
+static void set_child(struct builder *b, uint32_t node, uint32_t slot, const struct light *light, double most,
+                      const struct mcr_emitter *alone, const double *k)
+{
+    struct mcr_emitter_bounds *to = &b->bounds[node];
+    double half[3], c[3], reach = 0, along = 0, off = 0, sine, cosine, chord, slack;
+    for (int i = 0; i < 3; i++) {
+        c[i] = 0.5 * light->lo[i] + 0.5 * light->hi[i];
+        half[i] = 0.5 * light->hi[i] - 0.5 * light->lo[i];
+        reach = fmax(reach, fabs(c[i]) + half[i]);
+        along += fabs(light->axis[i]) * half[i];
+        to->c[i][slot] = (float)((c[i] - to->origin[i]) * to->scale);
+        to->axis[i][slot] = (float)light->axis[i];
+    }
+    slack = SLACK * reach + MCR_TREE_SLACK / to->scale;
+    double radius = (alone && alone->kind == MCR_EMITTER_SPHERE ? k[MCR_K_RADIUS] : mcr_length(half)) + slack;
     mcr_sincos_turns(light->angle / (2 * MCR_PI), &sine, &cosine);
     chord = sqrt(2 * fmax(0, 1 - cosine)); /* how far normals are from the axis */
-    to->radius[slot] = radius;
     for (int i = 0; i < 3; i++) /* the middle of a triangle's box is not in its plane */
-        off += light->axis[i] * (to->c[i][slot] - k[MCR_K_C + i]);
-    to->lift[slot] = alone && is_flat(alone->kind) ? fabs(off) + slack : fmin(radius, along + chord * radius + slack);
-    to->open[slot] = (light->angle < 0.5 * MCR_PI ? sine : 1 - cosine) + MCR_TREE_GRACE;
+        off += light->axis[i] * (c[i] - k[MCR_K_C + i]);
+    double lift = alone && is_flat(alone->kind) ? fabs(off) + slack : fmin(radius, along + chord * radius + slack);
+    radius *= to->scale;
+    to->radius[slot] = (float)radius;
+    to->lift[slot] = (float)(lift * to->scale);
+    to->open[slot] = (float)(light->angle < 0.5 * MCR_PI ? sine : 1 - cosine) + MCR_TREE_GRACE;
     to->fold[slot] = light->folds ? 1 : -1;
-    to->within[slot] = light->inner ? radius * radius * (1 + MCR_TREE_GRACE) : INFINITY;
-    to->power[slot] = light->power;
+    to->within[slot] = light->inner ? (float)(radius * radius) * (1 + MCR_TREE_GRACE) : INFINITY;
+    to->power[slot] = fmaxf((float)(light->power / most) * MCR_TREE_POWER, MCR_TREE_LEAST_POWER);
 }
 
 /* ---- wide nodes ------------------------------------------------------------------------------------------------------------ */
@@ -410,26 +433,29 @@ static uint32_t count_nodes(const struct branch *branch, uint32_t at)
 static struct light widen(struct builder *b, uint32_t at, uint64_t place)
 {
     uint32_t entry[MCR_TREE_WIDTH], entries = open_branch(b->branch, at, entry), here = b->nodes++;
-    struct light whole = {.power = 0};
+    struct light light[MCR_TREE_WIDTH], whole;
+    double most = 0;
     b->node[here].count = b->bounds[here].count = entries;
     b->bounds[here].place = place;
     for (uint32_t i = 0; i < entries; i++) {
-        const struct branch *branch = &b->branch[entry[i]];
-        const struct item *item = &b->item[branch->first];
-        int alone = branch->count == 1;
-        b->node[here].child[i] = b->bounds[here].child[i] = alone ? ~(int32_t)branch->first : (int32_t)b->nodes;
-        struct light light = alone ? light_of(b, branch->first) : widen(b, entry[i], MCR_TREE_PLACE(here, i));
+        uint32_t first = b->branch[entry[i]].first;
+        int alone = b->branch[entry[i]].count == 1;
+        b->node[here].child[i] = b->bounds[here].child[i] = alone ? ~(int32_t)first : (int32_t)b->nodes;
+        light[i] = alone ? light_of(b, first) : widen(b, entry[i], MCR_TREE_PLACE(here, i));
         if (alone)
-            b->place[branch->first] = MCR_TREE_PLACE(here, i);
-        set_child(b, here, i, &light, alone ? &b->all->emitter[item->emitter] : NULL, b->all->k[item->emitter]);
+            b->place[first] = MCR_TREE_PLACE(here, i);
         if (i == 0)
-            whole = light;
+            whole = light[i];
         else
-            light_merge(&whole, &light);
+            light_merge(&whole, &light[i]);
+        most = fmax(most, light[i].power);
     }
-    for (uint32_t i = entries; i < MCR_TREE_WIDTH; i++)
-        for (int a = 0; a < 3; a++) /* no ray crosses it; its power is 0 */
-            b->node[here].lo[a][i] = INFINITY, b->node[here].hi[a][i] = -INFINITY;
+    set_frame(&b->bounds[here], &whole);
+    for (uint32_t i = 0; i < entries; i++) {
+        uint32_t e = b->item[b->branch[entry[i]].first].emitter;
+        set_child(b, here, i, &light[i], most, b->branch[entry[i]].count == 1 ? &b->all->emitter[e] : NULL, b->all->k[e]);
+    }
+    set_boxes(&b->node[here], light);
     return whole;
 }
 

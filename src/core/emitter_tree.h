@@ -33,22 +33,43 @@ struct mcr_emitter_node {
  * Bounds of the children's light, for a point p (A. Conty Estevez, C. Kulla, "Importance sampling of many lights with adaptive tree
  * splitting", Proc. ACM Comput. Graph. Interact. Tech. 1(2), 2018): a ball around the emitters, and a cone around their normals. Unused
  * children have power 0.
+ *
+ * Single precision is enough to choose by, and half as much to load; so that it has the range, too, each node has a frame of its own: a
+ * point p of the world is (p - origin) * scale there, the children lie in [-1, 1]^3, and powers are relative to the node's largest. Balls
+ * and cones are larger than what is in them by more than all roundings of the numbers here and in emitter_choose.c: MCR_TREE_SLACK and
+ * MCR_TREE_GRACE.
  */
 struct mcr_emitter_bounds { /* whole cache lines */
-    _Alignas(64) double c[3][MCR_TREE_WIDTH]; /* centre of the ball */
-    double radius[MCR_TREE_WIDTH];
-    double axis[3][MCR_TREE_WIDTH]; /* of the cone, unit */
-    double open[MCR_TREE_WIDTH];    /* of its half angle t: sin t below a quarter turn, 1 - cos t above; and MCR_TREE_GRACE */
-    double lift[MCR_TREE_WIDTH];    /* no q of the ball's emitters with a normal n there has n.(c - q) above this */
-    double fold[MCR_TREE_WIDTH];    /* 1: both sides of the cone emit, -1: the axis' side does */
-    double within[MCR_TREE_WIDTH];  /* square of the distance from c beyond which nothing is seen */
-    double power[MCR_TREE_WIDTH];   /* of the sides that a point can see at once, relative to all emitters' */
-    int32_t child[MCR_TREE_WIDTH];  /* as in struct mcr_emitter_node */
+    _Alignas(64) float c[3][MCR_TREE_WIDTH]; /* centre of the ball */
+    float radius[MCR_TREE_WIDTH];            /* at least MCR_TREE_SLACK */
+    float axis[3][MCR_TREE_WIDTH];           /* of the cone, unit */
+    float open[MCR_TREE_WIDTH];              /* of its half angle t: sin t below a quarter turn, 1 - cos t above; and MCR_TREE_GRACE */
+    float lift[MCR_TREE_WIDTH];              /* no q of the ball's emitters with a normal n there has n.(c - q) above this */
+    float fold[MCR_TREE_WIDTH];              /* 1: both sides of the cone emit, -1: the axis' side does */
+    float within[MCR_TREE_WIDTH];            /* square of the distance from c beyond which nothing is seen */
+    float power[MCR_TREE_WIDTH];             /* of the sides that a point can see at once: MCR_TREE_LEAST_POWER .. MCR_TREE_POWER, or 0 */
+    int32_t child[MCR_TREE_WIDTH];           /* as in struct mcr_emitter_node */
+    double origin[3], scale;                 /* scale: a power of two */
     uint64_t place;
     uint32_t count;
 };
 
-/* What cosines near a horizon are lifted by, far above their roundings. */
-#define MCR_TREE_GRACE 0x1p-20
+/* What lengths in a node's frame are enlarged by, and cosines near a horizon are lifted by, far above roundings of single precision. */
+#define MCR_TREE_SLACK 0x1p-20f
+#define MCR_TREE_GRACE 0x1p-19f
+
+/*
+ * A point farther than this from a node's origin, in its frame, is taken for one at that distance in the same direction: from there, the
+ * children are all in one direction to 2^-23.
+ */
+#define MCR_TREE_FAR 0x1p24
+
+/*
+ * Powers in a node. With those limits an importance that is not 0 is in 2^-110 .. 2^121: the inverse square of a distance is in 2^-50 ..
+ * 2^40, and cosines that are not 0 are above 2^-46 and, of a surface's far side, 2^-50, since sums of numbers of which one is above
+ * 2^-20 are multiples of 2^-44.
+ */
+#define MCR_TREE_POWER 0x1p80f
+#define MCR_TREE_LEAST_POWER 0x1p40f
 
 #endif
