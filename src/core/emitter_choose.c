@@ -16,17 +16,12 @@
 #define SEEN MCR_ISA_NAME(mcr_emitter_seen)
 
 /*
- * What of a surface's far side counts. Light from there matters if the material lets it through, which is not known here: it is chosen
- * seldom where there is light in front as well, but it is chosen.
+ * Times the cosine of what is on a surface's far side. Light from there matters if the material lets it through, which is not known here:
+ * it is chosen seldom where there is light in front as well, but it is chosen.
  */
-#define BEHIND 0.0625f
+#define BEHIND (-0.0625f)
 
 #define LARGEST_NUMBER (1 - 0x1p-53)
-
-/* A point in a node's frame, and the normal of the surface there; `open` is 1 if there is none, else 0. */
-struct spot {
-    float px, py, pz, nx, ny, nz, open;
-};
 
 static inline double largest_of(double x, double y, double z)
 {
@@ -34,64 +29,106 @@ static inline double largest_of(double x, double y, double z)
     return most > az ? most : az;
 }
 
-static inline struct spot spot_of(const struct mcr_emitter_lanes *points, uint32_t i, const struct mcr_emitter_bounds *node)
+/* The points of n lanes in the frames of their nodes. */
+static __attribute__((noinline)) void to_frames(const struct mcr_emitter_bounds *bounds, const struct mcr_emitter_lanes *points, uint32_t n,
+                                                const int32_t *restrict lane, const int32_t *restrict node, mcr_emitter_thin *restrict to)
 {
-    double x = points->px[i] - node->origin[0], y = points->py[i] - node->origin[1], z = points->pz[i] - node->origin[2];
-    double far = largest_of(x, y, z), scale = node->scale;
-    if (far * scale > MCR_TREE_FAR)
-        scale = MCR_TREE_FAR / far;
-    struct spot s = {(float)(x * scale), (float)(y * scale), (float)(z * scale), 0, 0, 0, 1};
-    if (points->nx) {
-        double nx = points->nx[i], ny = points->ny[i], nz = points->nz[i];
-        s.nx = (float)nx, s.ny = (float)ny, s.nz = (float)nz;
-        s.open = nx == 0 && ny == 0 && nz == 0 ? 1 : 0;
+    const double *restrict px = points->px, *restrict py = points->py, *restrict pz = points->pz;
+    const double *restrict ox = bounds->origin, *restrict oy = ox + 1, *restrict oz = ox + 2, *restrict scale = &bounds->scale;
+    MCR_LANES
+    for (uint32_t j = 0; j < n; j++) {
+        int64_t at = node[j] * (int64_t)(sizeof *bounds / sizeof(double)), i = lane[j];
+        double x = px[i] - ox[at], y = py[i] - oy[at], z = pz[i] - oz[at];
+        double far = largest_of(x, y, z), by = scale[at], nearer = MCR_TREE_FAR / far;
+        by = far * by > MCR_TREE_FAR ? nearer : by;
+        to[0][j] = (float)(x * by);
+        to[1][j] = (float)(y * by);
+        to[2][j] = (float)(z * by);
     }
-    return s;
+}
+
+/* What is opposite to the normals of the surfaces at points, and 1 if there is none, else 0. */
+static __attribute__((noinline)) void away_from(const struct mcr_emitter_lanes *points, mcr_emitter_thin *restrict to)
+{
+    const double *restrict nx = points->nx, *restrict ny = points->ny, *restrict nz = points->nz;
+    const uint32_t n = points->n;
+    for (uint32_t i = 0; !nx && i < n; i++) {
+        to[0][i] = to[1][i] = to[2][i] = 0;
+        to[3][i] = 1;
+    }
+    if (!nx)
+        return;
+    MCR_LANES
+    for (uint32_t i = 0; i < n; i++) {
+        double x = -nx[i], y = -ny[i], z = -nz[i], most = largest_of(x, y, z);
+        to[0][i] = (float)x;
+        to[1][i] = (float)y;
+        to[2][i] = (float)z;
+        to[3][i] = most > 0 ? 0 : 1;
+    }
 }
 
 /* About the mean of max(0, x) for x that are spread evenly over middle +- half: never 0 where one of them is above 0. */
 static inline float clipped(float middle, float half)
 {
-    float part = 0.25f * (middle + half);
-    part = part > middle ? part : middle;
-    return part > 0 ? part : 0;
+    float most = middle + half, part = 0.25f * (most > 0 ? most : 0);
+    return part > middle ? part : middle;
 }
 
 /*
- * Importances of a node's children: power * cosine at the emitters * cosine at the surface / distance^2, each cosine about as it is on average
- * over the ball and the cone, but never 0 where one of them is not. With d from the ball's centre c to the point: some q of the emitters and some n of their
- * normals has n.(p - q) > 0 only if a.d / |d| + open + lift / |d| > 0; and a part of the ball is in front of the surface only if
- * -n.d / |d| + radius / |d| > 0. Cones wider than a hemisphere's are taken for the more even the wider they are. The distance counts as at
- * least the radius.
+ * Importances of a node's children: power * cosine at the emitters * cosine at the surface / distance^2, each cosine about as it is on
+ * average over the ball and the cone, but never 0 where one of them is not. With d from the ball's centre c to the point: some q of the
+ * emitters and some n of their normals has n.(p - q) > 0 only if a.d / |d| + open + lift / |d| > 0; and a part of the ball is in front of
+ * the surface only if -n.d / |d| + radius / |d| > 0. Cones wider than a hemisphere's light all directions, the more the wider they are.
+ * The distance counts as at least the radius.
  *
  * Roundings: the frame's numbers are off by 2^-22 of the frame at most, or if that is more, 2^-22 of the distance (the point, the centre,
  * their difference, MCR_TREE_FAR), and a cosine by 2^-21 (axis or normal, product, root, division).
  */
-static __attribute__((noinline)) void importances(const struct mcr_emitter_bounds *restrict b, const struct spot *restrict s,
-                                                  double *restrict out)
+static __attribute__((noinline)) void importances(const struct mcr_emitter_bounds *restrict bounds, uint32_t n,
+                                                  const struct mcr_emitter_descent *restrict d, double *restrict out)
 {
-    const float *restrict cx = b->c[0], *restrict cy = b->c[1], *restrict cz = b->c[2], *restrict radius = b->radius;
-    const float *restrict ax = b->axis[0], *restrict ay = b->axis[1], *restrict az = b->axis[2], *restrict open = b->open;
-    const float *restrict lift = b->lift, *restrict fold = b->fold, *restrict within = b->within, *restrict power = b->power;
-    const float px = s->px, py = s->py, pz = s->pz, nx = s->nx, ny = s->ny, nz = s->nz, least = s->open;
-    MCR_LANES
-    for (uint32_t i = 0; i < MCR_TREE_WIDTH; i++) {
-        float dx = px - cx[i], dy = py - cy[i], dz = pz - cz[i], square = dx * dx + dy * dy + dz * dz;
-        float near = radius[i] * radius[i], reach = within[i];
-        near = near < square ? square : near;
-        float inverse = 1 / sqrtf(near), sine = radius[i] * inverse + MCR_TREE_GRACE;
-        float along = (ax[i] * dx + ay[i] * dy + az[i] * dz) * inverse, over = -fold[i] * along;
-        float facing = along > over ? along : over, spread = open[i] + lift[i] * inverse;
-        float faces = -(nx * dx + ny * dy + nz * dz) * inverse;
-        float shines = clipped(facing, spread), front = clipped(faces, sine), back = BEHIND * clipped(-faces, sine);
-        shines = spread > 1 ? shines + (spread - 1) : shines;
-        shines = shines > 1 ? 1 : shines;
-        float lit = front > back ? front : back;
-        lit = lit > least ? lit : least;
-        shines = shines > 0 ? shines : 0;
-        shines = square <= reach ? shines : 0;
-        out[i] = power[i] * shines * lit * (inverse * inverse);
+    for (uint32_t j = 0; j < n; j++, out += MCR_TREE_WIDTH) {
+        const struct mcr_emitter_bounds *restrict b = &bounds[d->node[j]];
+        const int32_t lane = d->lane[j];
+        const float px = d->point[0][j], py = d->point[1][j], pz = d->point[2][j];
+        const float nx = d->away[0][lane], ny = d->away[1][lane], nz = d->away[2][lane], least = d->away[3][lane];
+        MCR_LANES
+        for (uint32_t i = 0; i < MCR_TREE_WIDTH; i++) {
+            float dx = px - b->c[0][i], dy = py - b->c[1][i], dz = pz - b->c[2][i], square = dx * dx + dy * dy + dz * dz;
+            float radius = b->radius[i], near = radius * radius;
+            near = near < square ? square : near;
+            float inverse = 1 / sqrtf(near), sine = radius * inverse + MCR_TREE_GRACE;
+            float along = (b->axis[0][i] * dx + b->axis[1][i] * dy + b->axis[2][i] * dz) * inverse, over = b->fold[i] * along;
+            float facing = along > over ? along : over, spread = b->open[i] + b->lift[i] * inverse, even = spread - 1;
+            float faces = (nx * dx + ny * dy + nz * dz) * inverse, lit = clipped(faces, sine), back = BEHIND * faces;
+            float shines = clipped(facing, spread), power = b->power[i];
+            shines = shines > even ? shines : even;
+            shines = shines > 1 ? 1 : shines;
+            lit = lit > back ? lit : back;
+            lit = lit > least ? lit : least;
+            power = square <= b->within[i] ? power : 0;
+            out[i] = power * shines * lit * (inverse * inverse);
+        }
     }
+}
+
+/* Point i alone, for importances_of. */
+static void descend_alone(const struct mcr_emitter_lanes *points, uint32_t i, struct mcr_emitter_lanes *one, struct mcr_emitter_descent *d)
+{
+    *one = (struct mcr_emitter_lanes){.n = 1, .px = points->px + i, .py = points->py + i, .pz = points->pz + i};
+    if (points->nx)
+        one->nx = points->nx + i, one->ny = points->ny + i, one->nz = points->nz + i;
+    away_from(one, d->away);
+    d->lane[0] = 0;
+}
+
+/* The importances of one node's children. */
+static void importances_of(const struct mcr_emitters *all, int32_t node, const struct mcr_emitter_lanes *one, struct mcr_emitter_descent *d)
+{
+    d->node[0] = node;
+    to_frames(all->bounds, one, 1, d->lane, d->node, d->point);
+    importances(all->bounds, 1, d, d->importance);
 }
 
 /* The sum of eight importances, in the order of choose_children. */
@@ -105,7 +142,7 @@ static inline double total_of(const double w[MCR_TREE_WIDTH])
  * this order, which is shorter to wait for than one after the other, do not fall: roundings are monotonic.
  */
 static __attribute__((noinline)) void choose_children(uint32_t n, const double *restrict importance, double *restrict number,
-                                                      double *restrict share, int64_t *restrict slot)
+                                                      double *restrict share, double *restrict slot)
 {
     MCR_LANES
     for (uint32_t i = 0; i < n; i++) {
@@ -126,22 +163,33 @@ static __attribute__((noinline)) void choose_children(uint32_t n, const double *
         double rest = (target - before) / own, part = own / total;
         number[i] = rest < LARGEST_NUMBER ? rest : LARGEST_NUMBER;
         share[i] *= part;
-        int64_t child = (right ? 4 : 0) + (second ? 2 : 0) + (last ? 1 : 0);
+        double child = (right ? 4.0 : 0.0) + (second ? 2.0 : 0.0) + (last ? 1.0 : 0.0);
         slot[i] = own > 0 ? child : -1; /* all are 0, or as good as */
     }
 }
 
-/* The chosen children become the lanes' nodes; lanes that have come to a leaf, or have nothing to choose, leave. Returns how many go on. */
-static uint32_t descend(const struct mcr_emitters *all, uint32_t count, struct mcr_emitter_descent *d, struct mcr_emitter_scratch *scratch)
+#define CACHE_LINE 64u
+
+/*
+ * The chosen children become the lanes' nodes; lanes that have come to a leaf, or have nothing to choose, leave. Returns how many go on.
+ *
+ * What a lane looks at next, the bounds of its node or the constants of its emitter, is fetched ahead: those of ten thousand emitters are 3
+ * MB. (Not by a function: gcc removes calls of functions that do nothing else.)
+ */
+static uint32_t go_down(const struct mcr_emitters *all, uint32_t count, struct mcr_emitter_descent *d, struct mcr_emitter_scratch *scratch)
 {
     uint32_t left = 0;
     for (uint32_t j = 0; j < count; j++) {
-        int32_t i = d->lane[j];
-        int64_t slot = d->slot[j];
-        int32_t child = all->bounds[d->node[j]].child[slot < 0 ? 0 : slot];
-        int none = slot < 0;
+        int32_t i = d->lane[j], slot = (int32_t)d->slot[j], none = slot < 0;
+        int32_t child = all->bounds[d->node[j]].child[none ? 0 : slot];
         scratch->chosen[i] = none | (child >= 0) ? -1 : ~child;
         scratch->share[i] = none ? 0 : d->share[j];
+        if (child < 0)
+            for (uint32_t at = 0; at < sizeof *all->k; at += CACHE_LINE)
+                __builtin_prefetch((const char *)all->k[~child] + at);
+        else
+            for (uint32_t at = 0; at < sizeof *all->bounds; at += CACHE_LINE)
+                __builtin_prefetch((const char *)&all->bounds[child] + at);
         d->lane[left] = i;
         d->node[left] = child;
         d->number[left] = d->number[j];
@@ -163,56 +211,54 @@ void MCR_ISA_NAME(mcr_emitter_choose)(const struct mcr_emitters *all, const stru
         d->node[i] = 0;
         d->lane[i] = (int32_t)i;
     }
+    away_from(points, d->away);
     while (count > 0) {
-        for (uint32_t j = 0; j < count; j++) {
-            const struct mcr_emitter_bounds *node = &all->bounds[d->node[j]];
-            struct spot spot = spot_of(points, (uint32_t)d->lane[j], node);
-            importances(node, &spot, d->importance + MCR_TREE_WIDTH * (size_t)j);
-        }
+        to_frames(all->bounds, points, count, d->lane, d->node, d->point);
+        importances(all->bounds, count, d, d->importance);
         choose_children(count, d->importance, d->number, d->share, d->slot);
-        count = descend(all, count, d, scratch);
+        count = go_down(all, count, d, scratch);
     }
 }
 
-double MCR_ISA_NAME(mcr_emitter_chance)(const struct mcr_emitters *all, const struct mcr_emitter_lanes *points, uint32_t i, uint32_t e)
+double MCR_ISA_NAME(mcr_emitter_chance)(const struct mcr_emitters *all, const struct mcr_emitter_lanes *points, uint32_t i, uint32_t e,
+                                        struct mcr_emitter_descent *d)
 {
     uint64_t path[MCR_TREE_DEPTH], place = all->place[e];
+    struct mcr_emitter_lanes one;
     uint32_t depth = 0;
     double share = 1;
+    descend_alone(points, i, &one, d);
     for (; place != MCR_TREE_ROOT; place = all->bounds[place >> 3].place)
         path[depth++] = place;
     while (depth-- > 0 && share > 0) {
-        double importance[MCR_TREE_WIDTH] __attribute__((aligned(64)));
-        const struct mcr_emitter_bounds *node = &all->bounds[path[depth] >> 3];
-        struct spot spot = spot_of(points, i, node);
-        importances(node, &spot, importance);
-        double own = importance[path[depth] & 7];
-        share = own > 0 ? share * (own / total_of(importance)) : 0;
+        importances_of(all, (int32_t)(path[depth] >> 3), &one, d);
+        double own = d->importance[path[depth] & 7];
+        share = own > 0 ? share * (own / total_of(d->importance)) : 0;
     }
     return share;
 }
 
 /* Everything below the root whose importance is not 0, depth first. */
-static double mass_at(const struct mcr_emitters *all, const struct mcr_emitter_lanes *points, uint32_t lane)
+static double mass_at(const struct mcr_emitters *all, const struct mcr_emitter_lanes *points, uint32_t lane, struct mcr_emitter_descent *d)
 {
     struct {
         double share;
         int32_t node;
     } stack[MCR_TREE_DEPTH * MCR_TREE_WIDTH];
+    struct mcr_emitter_lanes one;
     uint32_t depth = 1;
     double mass = 0, seen;
-    const struct mcr_emitter_lanes one = {.n = 1, .px = points->px + lane, .py = points->py + lane, .pz = points->pz + lane,
-                                          .distance = &seen};
+    descend_alone(points, lane, &one, d);
+    one.distance = &seen;
     stack[0].share = 1;
     stack[0].node = 0;
     while (depth > 0) {
-        double importance[MCR_TREE_WIDTH] __attribute__((aligned(64))), share = stack[--depth].share, total;
+        double share = stack[--depth].share, total;
         const struct mcr_emitter_bounds *node = &all->bounds[stack[depth].node];
-        struct spot spot = spot_of(points, lane, node);
-        importances(node, &spot, importance);
-        total = total_of(importance);
+        importances_of(all, stack[depth].node, &one, d);
+        total = total_of(d->importance);
         for (uint32_t i = 0; i < node->count; i++) {
-            double part = importance[i] > 0 ? share * (importance[i] / total) : 0;
+            double part = d->importance[i] > 0 ? share * (d->importance[i] / total) : 0;
             if (!(part > 0))
                 continue;
             if (node->child[i] >= 0) {
@@ -227,8 +273,9 @@ static double mass_at(const struct mcr_emitters *all, const struct mcr_emitter_l
     return mass < 1 ? mass : 1;
 }
 
-void MCR_ISA_NAME(mcr_emitter_tree_mass)(const struct mcr_emitters *all, const struct mcr_emitter_lanes *points, double *mass)
+void MCR_ISA_NAME(mcr_emitter_tree_mass)(const struct mcr_emitters *all, const struct mcr_emitter_lanes *points, double *mass,
+                                         struct mcr_emitter_descent *d)
 {
     for (uint32_t i = 0; i < points->n; i++)
-        mass[i] = mass_at(all, points, i);
+        mass[i] = mass_at(all, points, i, d);
 }

@@ -21,6 +21,7 @@ struct mcr_emitter_lanes {
 };
 
 typedef double mcr_emitter_row[MCR_EMITTER_BLOCK];
+typedef float mcr_emitter_thin[MCR_EMITTER_BLOCK];
 
 /* Gathered lanes with the constants of an emitter each. */
 struct mcr_emitter_pack {
@@ -72,13 +73,13 @@ struct mcr_emitter_pairs {
 };
 
 /*
- * Lanes on their way down the tree, side by side: their nodes, the importances of the eight children, the chosen ones, the probability of
- * having come there, and what is left of the number that chooses.
+ * Lanes on their way down the tree, side by side: their nodes, the points in the nodes' frames, the importances of the eight children (those
+ * of a lane one after the other), the chosen ones, the probability of having come there, and what is left of the number that chooses.
  */
 struct mcr_emitter_descent {
     double importance[8 * MCR_EMITTER_BLOCK];
-    mcr_emitter_row number, share;
-    int64_t slot[MCR_EMITTER_BLOCK];
+    mcr_emitter_row number, share, slot;
+    mcr_emitter_thin point[3], away[4]; /* away: by lanes of the block */
     int32_t node[MCR_EMITTER_BLOCK], lane[MCR_EMITTER_BLOCK];
 };
 
@@ -122,9 +123,11 @@ void MCR_ISA_NAME(mcr_emitter_draw)(const struct mcr_emitters *all, uint32_t kin
 void MCR_ISA_NAME(mcr_emitter_choose)(const struct mcr_emitters *all, const struct mcr_emitter_lanes *points, const double *number,
                                       struct mcr_emitter_scratch *scratch);
 /* The probability with which emitter e is chosen in lane i, to the bit. */
-double MCR_ISA_NAME(mcr_emitter_chance)(const struct mcr_emitters *all, const struct mcr_emitter_lanes *points, uint32_t i, uint32_t e);
+double MCR_ISA_NAME(mcr_emitter_chance)(const struct mcr_emitters *all, const struct mcr_emitter_lanes *points, uint32_t i, uint32_t e,
+                                        struct mcr_emitter_descent *scratch);
 /* Sums over the emitters that lanes see the probabilities that they are chosen. */
-void MCR_ISA_NAME(mcr_emitter_tree_mass)(const struct mcr_emitters *all, const struct mcr_emitter_lanes *points, double *mass);
+void MCR_ISA_NAME(mcr_emitter_tree_mass)(const struct mcr_emitters *all, const struct mcr_emitter_lanes *points, double *mass,
+                                         struct mcr_emitter_descent *scratch);
 
 /*
  * emitter_walk.c, with the tree. Adds to `sum` the densities of all emitters that the lanes' rays cross, times the probabilities that they

@@ -272,7 +272,7 @@ static void add_flagged(const struct mcr_emitters *all, uint32_t e, uint32_t by,
     DENSITY(all, all->emitter[e].kind, by, 0, &lanes, all->k[e], 0, &s->solid);
     for (uint32_t j = 0; j < count; j++) {
         int32_t i = s->list[j];
-        double probability = all->bounds ? CHANCE(all, block, (uint32_t)i, e) : all->emitter[e].probability;
+        double probability = all->bounds ? CHANCE(all, block, (uint32_t)i, e, &s->descent) : all->emitter[e].probability;
         sum[i] += probability * pack->density[j];
     }
 }
@@ -459,7 +459,7 @@ static void mass(const struct mcr_emitters *all, void *scratch, uint32_t by, con
     for (uint32_t base = 0; base < at->n; base += MCR_EMITTER_BLOCK) {
         struct mcr_emitter_lanes block = block_points(at, base);
         if (all->bounds) {
-            TREE_MASS(all, &block, out + base);
+            TREE_MASS(all, &block, out + base, &s->descent);
             continue;
         }
         sum_seen(all, &block, s);
@@ -567,7 +567,7 @@ static void density_point(const struct mcr_emitters *all, void *scratch, uint32_
             int32_t e = points->emitter[base + i];
             s->chosen[i] = e;
             s->density[i] = 0;
-            s->share[i] = e < 0 ? 0 : all->bounds ? CHANCE(all, &block, i, (uint32_t)e) : all->emitter[e].probability;
+            s->share[i] = e < 0 ? 0 : all->bounds ? CHANCE(all, &block, i, (uint32_t)e, &s->descent) : all->emitter[e].probability;
         }
         density_of_points(all, by, &block, s);
         if (shares(all)) {

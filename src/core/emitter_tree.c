@@ -379,7 +379,7 @@ static void set_child(struct builder *b, uint32_t node, uint32_t slot, const str
     to->radius[slot] = (float)radius;
     to->lift[slot] = (float)(lift * to->scale);
     to->open[slot] = (float)(light->angle < 0.5 * MCR_PI ? sine : 1 - cosine) + MCR_TREE_GRACE;
-    to->fold[slot] = light->folds ? 1 : -1;
+    to->fold[slot] = light->folds ? -1 : 1;
     to->within[slot] = light->inner ? (float)(radius * radius) * (1 + MCR_TREE_GRACE) : INFINITY;
     to->power[slot] = fmaxf((float)(light->power / most) * MCR_TREE_POWER, MCR_TREE_LEAST_POWER);
 }

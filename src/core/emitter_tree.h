@@ -65,9 +65,9 @@ struct mcr_emitter_bounds { /* whole cache lines */
 #define MCR_TREE_FAR 0x1p24
 
 /*
- * Powers in a node. With those limits an importance that is not 0 is in 2^-110 .. 2^121: the inverse square of a distance is in 2^-50 ..
- * 2^40, and cosines that are not 0 are above 2^-46 and, of a surface's far side, 2^-50, since sums of numbers of which one is above
- * 2^-20 are multiples of 2^-44.
+ * Powers in a node. With these limits an importance that is not 0 is in 2^-82 .. 2^120: the inverse square of a distance is in 2^-50 ..
+ * 2^40; a cosine at the emitters that is not 0 is above 2^-46, since sums of numbers of which one is above 2^-20 are multiples of 2^-44;
+ * that at the surface is above 2^-26.
  */
 #define MCR_TREE_POWER 0x1p80f
 #define MCR_TREE_LEAST_POWER 0x1p40f

@@ -72,7 +72,8 @@ static void add_pairs(const struct mcr_emitters *all, uint32_t by, const struct 
             measure_kind(all, kind, by, block, s);
     for (uint32_t j = 0; j < pairs->count; j++)
         if (pairs->value[j] > 0)
-            sum[pairs->lane[j]] += CHANCE(all, block, (uint32_t)pairs->lane[j], (uint32_t)pairs->emitter[j]) * pairs->value[j];
+            sum[pairs->lane[j]] +=
+                CHANCE(all, block, (uint32_t)pairs->lane[j], (uint32_t)pairs->emitter[j], &s->descent) * pairs->value[j];
     pairs->count = 0;
 }
 
