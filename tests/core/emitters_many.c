@@ -2,10 +2,12 @@
 /*
  * Many emitters, which are chosen through a tree: every one that sees a point has a chance there; chances of those that see it sum to the
  * mass; they are drawn as often as is told; chances are worth having (few draws are lost, and their weights are even); and trees of odd
- * sets, equal positions, powers from 1e-30 to 1e30, a hundred thousand emitters, are as good.
+ * sets, equal positions, powers from 1e-30 to 1e30, sizes from 1e-12 to 10, whole sets of 1e-40 or 1e40, a million of their sizes off the
+ * origin, are as good; points are up to 1e15 away.
  */
 #define MOST_SHAPES 2600
 #define MOST_TRIANGLES 500
+#include "core/emitter_lanes.h"
 #include "emitters_scene.h"
 
 #define LANES 4096u
@@ -58,8 +60,20 @@ static void add_any(struct stage *s, uint64_t key, const double c[3], double siz
     }
 }
 
-enum set { CLOUD, CLUSTERS, CEILING, LINE, ONE_PLACE, POWERS, SETS };
-static const char *const set_name[SETS] = {"cloud", "clusters", "ceiling", "line", "one place", "powers of 1e-30 to 1e30"};
+enum set { CLOUD, CLUSTERS, CEILING, LINE, ONE_PLACE, POWERS, SIZES, SMALL, LARGE, ASIDE, SETS };
+static const char *const set_name[SETS] = {"cloud", "clusters", "ceiling", "line", "one place", "powers of 1e-30 to 1e30",
+                                           "sizes of 1e-12 to 10", "all 1e-40 wide", "all 1e40 wide", "a million off"};
+
+/* Times the cube below, and where its middle is on each axis. */
+static double unit_of(enum set set)
+{
+    return set == SMALL ? 1e-40 : set == LARGE ? 1e40 : 1;
+}
+
+static double middle_of(enum set set)
+{
+    return set == ASIDE ? 1e6 : 0;
+}
 
 /* n emitters in and around the cube [-1, 1]^3; boxes count as six. */
 static void make(struct stage *s, enum set set, uint32_t n)
@@ -94,29 +108,40 @@ static void make(struct stage *s, enum set set, uint32_t n)
         case POWERS:
             radiance = pow(10, 60 * number(i, 9) - 30);
             break;
+        case SIZES:
+            size = pow(10, 13 * number(i, 9) - 12);
+            break;
         default:
             break;
         }
-        add_any(s, i, c, size, radiance);
+        for (int k = 0; k < 3; k++)
+            c[k] = middle_of(set) + unit_of(set) * c[k];
+        add_any(s, i, c, unit_of(set) * size, radiance);
     }
     for (uint32_t t = 0; t < MOST_TRIANGLES && t < n / 6; t++) {
         double p[3][3];
         for (int v = 0; v < 3; v++)
             for (int k = 0; k < 3; k++)
-                p[v][k] = 2 * number(t, 20 + (uint64_t)k) - 1 + 0.1 * number(t, 30 + 3 * (uint64_t)v + (uint64_t)k);
+                p[v][k] = middle_of(set) +
+                          unit_of(set) * (2 * number(t, 20 + (uint64_t)k) - 1 + 0.1 * number(t, 30 + 3 * (uint64_t)v + (uint64_t)k));
         stage_triangle(s, t % 2 ? FRONT : BACK, 1, p[0], p[1], p[2]);
     }
     stage_ready(s);
 }
 
+static double length_of(const double *v)
+{
+    return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+}
+
 /* Far from its plane or surface by more than roundings: 1 seen, -1 not seen, 0 too close to say. Knows shapes by their constants. */
-static int sees(const struct mcr_emitters *all, uint32_t e, const double p[3])
+static int sees(const struct mcr_emitters *all, enum set set, uint32_t e, const double p[3])
 {
     const struct mcr_emitter *emitter = &all->emitter[e];
     const double *k = all->k[e];
     double d[3] = {p[0] - k[0], p[1] - k[1], p[2] - k[2]}, height;
     if (emitter->kind == MCR_EMITTER_SPHERE) {
-        height = sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]) / k[MCR_K_RADIUS] - 1;
+        height = sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]) - k[MCR_K_RADIUS];
     } else if (emitter->kind == MCR_EMITTER_ELLIPSOID) {
         const double *m = k + MCR_K_DUAL0;
         double square = 0;
@@ -124,12 +149,12 @@ static int sees(const struct mcr_emitters *all, uint32_t e, const double p[3])
             double x = m[3 * i] * d[0] + m[3 * i + 1] * d[1] + m[3 * i + 2] * d[2];
             square += x * x;
         }
-        height = sqrt(square) - 1;
+        height = (sqrt(square) - 1) * fmin(length_of(k + MCR_K_E0), fmin(length_of(k + MCR_K_E1), length_of(k + MCR_K_N)));
     } else {
         const double *n = k + MCR_K_N;
         height = (d[0] * n[0] + d[1] * n[1] + d[2] * n[2]) / sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
     }
-    return fabs(height) < 1e-12 ? 0 : (height > 0 ? emitter->sides & FRONT : emitter->sides & BACK) ? 1 : -1;
+    return fabs(height) < 1e-12 * (unit_of(set) + middle_of(set)) ? 0 : (height > 0 ? emitter->sides & FRONT : emitter->sides & BACK) ? 1 : -1;
 }
 
 /* A point of emitter e that is seen from p: of the upper half of a sphere or ellipsoid if p is outside. */
@@ -239,20 +264,21 @@ static void find_chances(struct chances *c, const struct stage *s, const double 
     }
 }
 
-/* A point in the cube, near a surface, in a plane, or far away; and a normal, or none. */
-static void some_point(const struct stage *s, uint64_t key, double p[3], double n[3])
+/* A point in the cube, near a surface, in a plane, or `far` away; and a normal, or none. */
+static void some_point(const struct stage *s, enum set set, uint64_t key, double far, double p[3], double n[3])
 {
     const double *k = s->emitters->k[(uint32_t)(s->emitters->count * number(key, 99))];
-    double far = key % 7 == 6 ? 1e3 : 1, along[3];
+    const double unit_length = unit_of(set);
+    double reach = unit_length * (key % 7 == 6 ? far : 1), along[3];
     unit(key, 104, along);
     for (int i = 0; i < 3; i++) {
-        p[i] = far * (2.4 * number(key, 100 + (uint64_t)i) - 1.2);
+        p[i] = middle_of(set) + reach * (2.4 * number(key, 100 + (uint64_t)i) - 1.2);
         if (key % 7 == 1) /* close to an emitter */
-            p[i] = k[i] + 1e-3 * along[i];
-        else if (key % 7 == 2) /* over its plane by very little */
-            p[i] = k[i] + 0.37 * k[MCR_K_E0 + i] + 12 * k[MCR_K_E1 + i] + 1e-9 * along[i];
+            p[i] = k[i] + unit_length * 1e-3 * along[i];
+        else if (key % 7 == 2) /* over its plane by very little, beside it and far beside it */
+            p[i] = k[i] + 0.37 * k[MCR_K_E0 + i] + 0.012 * far * k[MCR_K_E1 + i] + unit_length * 1e-9 * (far / 1e3) * along[i];
         else if (key % 7 == 3)
-            p[i] = k[i] + 1e-7 * along[i];
+            p[i] = k[i] + unit_length * 1e-7 * along[i];
     }
     unit(key, 106, n);
     if (key % 4 == 0)
@@ -270,10 +296,10 @@ static void test_chances(enum set set, uint32_t n)
     for (uint64_t key = 0; key < 140; key++) {
         double p[3], normal[3], sum = 0, mass;
         int close = 0;
-        some_point(&s, key, p, normal);
+        some_point(&s, set, key, 1e3, p, normal);
         find_chances(&c, &s, p, normal);
         for (uint32_t e = 0; e < c.n; e++) {
-            int here = sees(s.emitters, e, p);
+            int here = sees(s.emitters, set, e, p);
             close |= here == 0;
             seen += here > 0;
             lost += here > 0 && !(c.chance[e] > 0);
@@ -294,6 +320,65 @@ static void test_chances(enum set set, uint32_t n)
     stage_end(&s);
 }
 
+/* Of 16 lanes at a point: how many tell another probability of what they chose, if anything, than is told of it, to the bit. */
+static uint32_t told_otherwise(const struct stage *s, uint64_t key, const double p[3], const double n[3])
+{
+    struct mcr_emitter_scratch *scratch = s->scratch;
+    double at[6][16], numbers[16], share[16];
+    int64_t chosen[16];
+    uint32_t wrong = 0;
+    for (uint32_t i = 0; i < 16; i++) {
+        for (int k = 0; k < 6; k++)
+            at[k][i] = k < 3 ? p[k] : n[k - 3];
+        numbers[i] = number(key, 200 + i);
+    }
+    struct mcr_emitter_lanes points = {.n = 16, .px = at[0], .py = at[1], .pz = at[2], .nx = at[3], .ny = at[4], .nz = at[5]};
+    MCR_ISA_NAME(mcr_emitter_choose)(s->emitters, &points, numbers, scratch);
+    memcpy(share, scratch->share, sizeof share);
+    memcpy(chosen, scratch->chosen, sizeof chosen);
+    for (uint32_t i = 0; i < 16; i++)
+        wrong += chosen[i] >= 0 && share[i] != MCR_ISA_NAME(mcr_emitter_chance)(s->emitters, &points, i, (uint32_t)chosen[i], &scratch->descent);
+    return wrong;
+}
+
+/*
+ * The same from the tree itself, at places where densities have lost their digits or are out of range: scenes of other sizes, and points
+ * that are very far away.
+ */
+static void test_extremes(enum set set, uint32_t n)
+{
+    static struct stage s;
+    uint64_t lost = 0, seen = 0;
+    double worst = 0, smallest = 1;
+    uint32_t wrong = 0;
+    make(&s, set, n);
+    struct mcr_emitter_descent *scratch = &((struct mcr_emitter_scratch *)s.scratch)->descent;
+    for (uint64_t key = 0; key < 140; key++) {
+        double p[3], normal[3], sum = 0, mass;
+        int close = 0;
+        some_point(&s, set, key, pow(10, 3 * (double)(key % 5) + 3), p, normal);
+        struct mcr_emitter_lanes point = {.n = 1, .px = p, .py = p + 1, .pz = p + 2, .nx = normal, .ny = normal + 1, .nz = normal + 2};
+        for (uint32_t e = 0; e < s.emitters->count; e++) {
+            double chance = MCR_ISA_NAME(mcr_emitter_chance)(s.emitters, &point, 0, e, scratch);
+            int here = sees(s.emitters, set, e, p);
+            close |= here == 0;
+            seen += here > 0;
+            lost += here > 0 && !(chance > 0);
+            smallest = here > 0 ? fmin(smallest, chance) : smallest;
+            sum += here > 0 ? chance : 0;
+        }
+        wrong += told_otherwise(&s, key, p, normal);
+        MCR_ISA_NAME(mcr_emitter_tree_mass)(s.emitters, &point, &mass, scratch);
+        worst = close ? worst : fmax(worst, fabs(sum - mass));
+    }
+    ok(lost == 0 && seen > 1000, "%s, %u emitters: each that sees a point has a chance (%llu of %llu have none; the least has %.1e)",
+       set_name[set], s.emitters->count, (unsigned long long)lost, (unsigned long long)seen, smallest);
+    ok(worst < 1e-9, "%s, %u emitters: the chances sum to the mass, to %.1e", set_name[set], s.emitters->count, worst);
+    ok(wrong == 0, "%s, %u emitters: what is drawn has the very probability that is told of it (%u have not)", set_name[set],
+       s.emitters->count, wrong);
+    stage_end(&s);
+}
+
 /* Chi-square of a quarter of a million choices against the chances told, as a normal deviate (Wilson and Hilferty 1931); cells below 10 are pooled. */
 static void test_choices(enum set set, uint32_t n, uint64_t key)
 {
@@ -304,7 +389,7 @@ static void test_choices(enum set set, uint32_t n, uint64_t key)
     int32_t *emitter = calloc(LANES + 16, sizeof *emitter);
     make(&s, set, n);
     uint32_t *count = calloc(s.emitters->count, sizeof *count), none = 0;
-    some_point(&s, key, p, normal);
+    some_point(&s, set, key, 1e3, p, normal);
     chances_begin(&c, s.emitters->count);
     find_chances(&c, &s, p, normal);
     batch_begin(&b, LANES);
@@ -362,6 +447,10 @@ static void test_choices(enum set set, uint32_t n, uint64_t key)
 int main(void)
 {
     for (int set = CLOUD; set < SETS; set++) {
+        test_extremes(set, 17);
+        test_extremes(set, 300);
+    }
+    for (int set = CLOUD; set < SIZES; set++) {
         test_chances(set, 17);
         test_chances(set, 300);
         test_choices(set, 300, 0);
