@@ -168,14 +168,17 @@ static __attribute__((noinline)) void choose_children(uint32_t n, const double *
     }
 }
 
-#define CACHE_LINE 64u
-
 /*
- * The chosen children become the lanes' nodes; lanes that have come to a leaf, or have nothing to choose, leave. Returns how many go on.
- *
- * What a lane looks at next, the bounds of its node or the constants of its emitter, is fetched ahead: those of ten thousand emitters are 3
- * MB. (Not by a function: gcc removes calls of functions that do nothing else.)
+ * Fetches what will be looked at soon: nodes and constants of ten thousand emitters are 3 MB. Not a function: gcc removes calls of functions
+ * that do nothing else.
  */
+#define FETCH(what)                                            \
+    do {                                                       \
+        for (uint32_t at_ = 0; at_ < sizeof(what); at_ += 64)  \
+            __builtin_prefetch((const char *)&(what) + at_);   \
+    } while (0)
+
+/* The chosen children become the lanes' nodes; lanes that have come to a leaf, or have nothing to choose, leave. Returns how many go on. */
 static uint32_t go_down(const struct mcr_emitters *all, uint32_t count, struct mcr_emitter_descent *d, struct mcr_emitter_scratch *scratch)
 {
     uint32_t left = 0;
@@ -184,12 +187,12 @@ static uint32_t go_down(const struct mcr_emitters *all, uint32_t count, struct m
         int32_t child = all->bounds[d->node[j]].child[none ? 0 : slot];
         scratch->chosen[i] = none | (child >= 0) ? -1 : ~child;
         scratch->share[i] = none ? 0 : d->share[j];
-        if (child < 0)
-            for (uint32_t at = 0; at < sizeof *all->k; at += CACHE_LINE)
-                __builtin_prefetch((const char *)all->k[~child] + at);
-        else
-            for (uint32_t at = 0; at < sizeof *all->bounds; at += CACHE_LINE)
-                __builtin_prefetch((const char *)&all->bounds[child] + at);
+        if (child < 0) {
+            FETCH(all->k[~child]);
+            FETCH(all->emitter[~child]);
+        } else {
+            FETCH(all->bounds[child]);
+        }
         d->lane[left] = i;
         d->node[left] = child;
         d->number[left] = d->number[j];

@@ -184,16 +184,17 @@ static uint32_t group_kind(const struct mcr_emitters *all, uint32_t group)
     return all->kinds >> group & 1 ? group : MCR_EMITTER_KINDS;
 }
 
+/* Where there is one kind only, it is not looked up: a lookup of one of many emitters waits for memory. */
 static uint32_t list_group(const struct mcr_emitters *all, const struct mcr_emitter_scratch *s, uint32_t n, uint32_t group,
                            int32_t *restrict list)
 {
     const int64_t *restrict chosen = s->chosen;
-    const int kinds = by_kind(all);
+    const int kinds = by_kind(all), one_kind = kinds && all->kinds == 1u << group;
     uint32_t count = 0;
     for (uint32_t i = 0; i < n; i++) {
         int64_t e = chosen[i];
         list[count] = (int32_t)i;
-        count += kinds ? e >= 0 && all->emitter[e].kind == group : e == (int64_t)group;
+        count += one_kind ? e >= 0 : kinds ? e >= 0 && all->emitter[e].kind == group : e == (int64_t)group;
     }
     return count;
 }
