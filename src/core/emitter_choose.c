@@ -185,7 +185,7 @@ static uint32_t go_down(const struct mcr_emitters *all, uint32_t count, struct m
     for (uint32_t j = 0; j < count; j++) {
         int32_t i = d->lane[j], slot = (int32_t)d->slot[j], none = slot < 0;
         int32_t child = all->bounds[d->node[j]].child[none ? 0 : slot];
-        scratch->chosen[i] = none | (child >= 0) ? -1 : ~child;
+        scratch->chosen[i] = (none | (child >= 0)) ? -1 : ~child;
         scratch->share[i] = none ? 0 : d->share[j];
         if (child < 0) {
             FETCH(all->k[~child]);
