@@ -189,12 +189,19 @@ static uint32_t list_group(const struct mcr_emitters *all, const struct mcr_emit
                            int32_t *restrict list)
 {
     const int64_t *restrict chosen = s->chosen;
-    const int kinds = by_kind(all), one_kind = kinds && all->kinds == 1u << group;
+    const int kinds = by_kind(all);
     uint32_t count = 0;
+    if (kinds && all->kinds == 1u << group) {
+        for (uint32_t i = 0; i < n; i++) {
+            list[count] = (int32_t)i;
+            count += chosen[i] >= 0;
+        }
+        return count;
+    }
     for (uint32_t i = 0; i < n; i++) {
         int64_t e = chosen[i];
         list[count] = (int32_t)i;
-        count += one_kind ? e >= 0 : kinds ? e >= 0 && all->emitter[e].kind == group : e == (int64_t)group;
+        count += kinds ? e >= 0 && all->emitter[e].kind == group : e == (int64_t)group;
     }
     return count;
 }
