@@ -192,6 +192,12 @@ MCR_INLINE void density_ball_solid(const struct mcr_emitter_lanes *lanes, const 
     DENSITY_LOOP(ball_load, ball, ball_solid_density(&s, RAY));
 }
 
+MCR_INLINE void density_ball_solid_alone(const struct mcr_emitter_lanes *lanes, const double *restrict k, const int varying)
+{
+    const double *restrict distance = lanes->distance;
+    DENSITY_LOOP(ball_load, ball, ball_solid_point_density(&s, RAY, distance[i]));
+}
+
 MCR_INLINE void density_egg_area(const struct mcr_emitter_lanes *lanes, const double *restrict k, const int varying)
 {
     DENSITY_LOOP(egg_load, egg, egg_area_density(&s, RAY));
@@ -212,7 +218,9 @@ MCR_INLINE void density_egg_alone(const struct mcr_emitter_lanes *lanes, const d
 /* By solid angle, but from inside a sphere by area: there a ray has one crossing, so that its density is that of the point alone. */
 static void density_ball(uint32_t by, int alone, const struct mcr_emitter_lanes *lanes, const double *k, int varying)
 {
-    if (by == MCR_LIGHT_BY_SOLID_ANGLE)
+    if (by == MCR_LIGHT_BY_SOLID_ANGLE && alone)
+        BY_VARYING(density_ball_solid_alone, lanes);
+    else if (by == MCR_LIGHT_BY_SOLID_ANGLE)
         BY_VARYING(density_ball_solid, lanes);
     else if (alone)
         BY_VARYING(density_ball_alone, lanes);

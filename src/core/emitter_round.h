@@ -76,6 +76,18 @@ MCR_INLINE double ball_solid_density(const struct ball *s, double px, double py,
     return height > 0 ? cone : by_area;
 }
 
+/*
+ * Density of the point at `distance` alone, by solid angle: from outside that of the cone for the nearer crossing, which is what is drawn, and 0
+ * for the farther one, which is seen where the nearer lets light pass. Between the two lies the distance of the limb.
+ */
+MCR_INLINE double ball_solid_point_density(const struct ball *s, double px, double py, double pz, double dx, double dy, double dz,
+                                           double distance)
+{
+    double height = ball_height(s, px, py, pz), limb = height + 16 * 0x1p-53 * (height + s->square);
+    double density = ball_solid_density(s, px, py, pz, dx, dy, dz);
+    return (height > 0) & (distance * distance > limb) ? 0 : density;
+}
+
 /* To the crossing that is seen: the nearer one from outside. */
 MCR_INLINE double ball_distance(const struct ball *s, double px, double py, double pz, double dx, double dy, double dz)
 {

@@ -65,6 +65,14 @@ plane { point (0, 0, 0.9)   normal (0, 0.02, 1)   material glass }
 sphere { center (0, 0, 0)   radius 0.2   material gauze }
 sphere { center (0, 0, 0)   radius 0.1   material gauze }'
 S 'and behind two spheres of gauze' "$(calculate 'f * (.2126 * .2 + .7152 * .5 + .0722 * .8) / 4 / 4' f=.14748482740113)" "$all"
+# The far wall of a ball, seen through the near one: by solid angle only the near one is drawn.
+receiver scene '(0.3, 0.2, 0.5)' 'material veil mask { material both   opacity 0.4 }
+sphere { center (0.3, -0.4, 1.2)   radius 0.6   material veil }'
+S 'both walls of a veiled lamp' "$(calculate '(.4 + .6 * .4) * .36 / 1.69 * 1.2 / 1.3')" "$all;light;control;sobol(nee)"
+receiver scene '(0.3, 0.2, 0.5)' 'material veil mask { material both   opacity 0.4 }
+sphere { center (0.3, -0.4, 1.2)   radius 0.6   material veil }
+sphere { center (0.6, -0.8, 2.4)   radius 1.2   material veil }'
+S 'and of two, of which the farther is twice as large' "$(calculate '(.4 + .6 * .4) * (1 + .36) * .36 / 1.69 * 1.2 / 1.3')" "$all;light;control"
 # Large panes of nothing before a tilted lamp: rays that end at it are not moved past it.
 for half in 3 30 1e4; do
     mean=
