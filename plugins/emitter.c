@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* emitter: radiates equally into all directions, from its front or from both sides. With an albedo it also scatters, as lambert does. */
-#include <math.h>
 #include <mcrender/surface.h>
 
 /* The parameters' places in the table, and their first channels among the inputs. */
@@ -16,7 +15,7 @@ static const struct mcr_parameter parameters[PARAMETERS] = {
                   .unit = "W/(sr m^2)",
                   .summary = "Emitted radiance, the same in all directions.",
                   .min = 0,
-                  .max = HUGE_VAL},
+                  .max = 1e100}, /* squares of it are numbers */
     [SIDES] = {.size = sizeof(struct mcr_parameter),
                .type = MCR_TYPE_CHOICE,
                .name = "sides",

@@ -23,7 +23,7 @@ int mcr_control_init(struct mcr_core *core, struct mcr_arena *arena)
     for (uint32_t t = 0; t < directions->technique_count; t++)
         if (directions->technique[t].flags & MCR_TECHNIQUE_CONTROL)
             core->control = (int32_t)t;
-    if (core->control < 0 || core->crosses || (core->scene->render.compat & MCR_COMPAT_BACKGROUND_AT_LIMIT) || !emitters->count || emitters->count > MCR_EMITTERS_FEW) {
+    if (core->control < 0 || core->crosses || (core->scene->render.compat & MCR_COMPAT_BACKGROUND_AT_LIMIT) || !emitters->count || emitters->count > MCR_CONTROL_EMITTERS) {
         core->control = -1;
         return 0;
     }

@@ -6,7 +6,7 @@
  * The first term is added as it is; the technique's points estimate the second: those that are hidden count -f Le / density, those that are seen nothing.
  * Where nothing is hidden there is no noise. What the path's own direction finds of such an emitter is in it already, and counts 0.
  * All other points and emitters are combined as ever: emitters seen under less than MCR_CONTROL_LEAST too, where the closed form loses digits. So is
- * everything in scenes with more emitters than MCR_EMITTERS_FEW, since the closed forms of all are summed at each point, and where light may pass
+ * everything in scenes with more emitters than MCR_CONTROL_EMITTERS, since the closed forms of all are summed at each point, and where light may pass
  * through surfaces.
  * J. Hammersley and D. Handscomb, "Monte Carlo Methods", 1964, 5.5. Private to src/core.
  */
@@ -15,6 +15,8 @@
 
 #include "core/batch.h"
 
+/* Most emitters of which the closed forms are summed. */
+#define MCR_CONTROL_EMITTERS 16u
 /* Area over distance^2 below which the closed form is not used: it keeps 9 digits there. */
 #define MCR_CONTROL_LEAST 1e-6
 

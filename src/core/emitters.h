@@ -18,7 +18,7 @@
 #include <mcrender/plugin.h>
 #include <mcrender/sampler.h>
 
-#define MCR_EMITTERS_FEW 16u
+#define MCR_EMITTERS_FEW 4u
 
 enum mcr_emitter_kind {
     MCR_EMITTER_PARALLELOGRAM,

@@ -8,6 +8,8 @@
  * have low throughput just where much light is to be found. By the share alone, paths of high throughput would gain more than they lose, without bound.
  * Stage file, compiled once per instruction set.
  */
+#include <math.h>
+
 #include "core/stages.h"
 
 void MCR_ISA_NAME(mcr_stage_scatter)(struct mcr_batch *batch, const struct mcr_range *range)
@@ -53,4 +55,26 @@ void MCR_ISA_NAME(mcr_stage_scatter)(struct mcr_batch *batch, const struct mcr_r
     }
     for (uint32_t k = begin; k < end; k++)
         paths->bounce[k]++;
+}
+
+/* Unit length is meant to a few roundings; what is off by a millionth is a mistake. */
+#define LENGTH_GRACE 2e-6
+
+uint32_t MCR_ISA_NAME(mcr_stage_unsound)(uint32_t n, const double *density, const struct mcr_directions *drawn)
+{
+    double count = 0;
+    if (!drawn) {
+        MCR_LANES
+        for (uint32_t i = 0; i < n; i++)
+            count += (density[i] >= 0) & (density[i] < INFINITY) ? 0.0 : 1.0;
+        return (uint32_t)count;
+    }
+    const double *x = drawn->x, *y = drawn->y, *z = drawn->z;
+    MCR_LANES
+    for (uint32_t i = 0; i < n; i++) {
+        double off = x[i] * x[i] + y[i] * y[i] + z[i] * z[i] - 1;
+        int none = density[i] == 0, fine = (density[i] > 0) & (density[i] < INFINITY) & (off < LENGTH_GRACE) & (off > -LENGTH_GRACE);
+        count += none | fine ? 0.0 : 1.0;
+    }
+    return (uint32_t)count;
 }

@@ -257,7 +257,7 @@ static const struct mcr_parameter checker[] = {
 };
 
 static const struct mcr_parameter surface[SURFACE_COUNT] = {
-    [SURFACE_EMISSION] = ROW("emission", MCR_TYPE_COLOUR, MCR_PARAMETER_VARYING, "W/(sr m^2)", 0, HUGE_VAL, 0, 0, 0,
+    [SURFACE_EMISSION] = ROW("emission", MCR_TYPE_COLOUR, MCR_PARAMETER_VARYING, "W/(sr m^2)", 0, FAR, 0, 0, 0,
                              "Radiance that the surface emits beside what its material does; a colour or a texture."),
     [SURFACE_EMISSION_SIDES] = CHOICE("emission_sides", "front|both", "The sides that emit it."),
     [SURFACE_NORMAL_MAP] = WORD("normal_map", MCR_WORD_TEXTURE, 0, "Texture of shading normals in tangent space."),

@@ -49,6 +49,27 @@ done
 run tenth.scn --plugin "$TMPDIR/nan.so" --quiet --crop 3,4,7,8 -o other.pfm --report other.json
 check "a crop: located in the whole picture" test "$(value x other.json)" -ge 3 -a "$(value y other.json)" -ge 4
 
+# ---- a sampler that draws or tells what cannot be: a tenth of its directions ----
+compile_plugin astray || { point 1 "astray.c compiles"; finish; }
+cat >astray.scn <<'TEXT'
+mcrender 1
+camera orthographic { from (0, 0, 5)   to (0, 0, 0)   height 8 }
+film { size (8, 8) }
+render { spp 64   depth 1   background 1 }
+material grey lambert { albedo 0.5 }
+quad { corner (-9, -9, 0)   u (18, 0, 0)   v (0, 18, 0)   material grey }
+TEXT
+for fault in nan-density negative-density infinite-density nan-direction long-direction; do
+    for way in "astray(fault=$fault)" "stratified(astray(fault=$fault))" "mixture(astray(fault=$fault) 1)"; do
+        run astray.scn --plugin "$TMPDIR/astray.so" --sampler "$way" --quiet -o astray.pfm --report astray.json
+        ends "$way: told" 0 "samples were not finite and count as black; the first: pixel "
+        count=$(value not_finite astray.json)
+        check "$way: counted, $count" awk -v n="$count" 'BEGIN { z = (n - 409.6) / 19.2; exit !(z >= -4 && z <= 4) }'
+    done
+done
+run astray.scn --plugin "$TMPDIR/astray.so" --sampler "mixture(astray 1, uniform 1)" --quiet -o astray.pfm --report astray.json
+ends "a child's density: told" 0 "samples were not finite"
+
 # ---- an operation that fails --------------------------------------------------------------------------------------------------------------
 picture 0 yes 'quad { corner (1.01, 1.01, 1)   u (0.98, 0, 0)   v (0, 0.98, 0)   material flawed }' >broken.scn
 : >old.ppm
