@@ -6,6 +6,8 @@
 #ifndef MCR_ACCEL_BLOCK_H
 #define MCR_ACCEL_BLOCK_H
 
+#include <string.h>
+
 #include "accel/isa.h"
 #include "accel/kernels.h"
 
@@ -125,6 +127,15 @@ static inline __attribute__((always_inline)) void block_triangle(const struct mc
         b->primitive[i] = nearer ? number : was;
         b->t[i] = nearer ? t : best;
     }
+}
+
+/* What was met, to the caller's arrays. */
+static inline __attribute__((always_inline)) void block_end(const struct mcr_block *b, double *t, int64_t *primitive)
+{
+    memcpy(t, b->t, b->count * sizeof *t);
+    MCR_LANES
+    for (uint32_t i = 0; i < b->count; i++)
+        primitive[i] = (int64_t)b->primitive[i];
 }
 
 static inline __attribute__((always_inline)) void block_inverses(struct mcr_block *b)

@@ -268,11 +268,7 @@ void MCR_ISA_NAME(mcr_bvh_closest)(const struct mcr_accel *accel, const struct m
         block_begin(accel, rays, first, NULL, 1, &b);
         block_wide(accel, &b);
         uint32_t count = block_enter(accel, &b, 0, list);
-        MCR_LANES
-        for (uint32_t i = 0; i < b.count; i++) {
-            t[first + i] = b.t[i];
-            primitive[first + i] = (int64_t)b.primitive[i];
-        }
+        block_end(&b, t + first, primitive + first);
         for (uint32_t l = 0; l < count; l++) {
             struct best best = block_ray(accel, &b, list[l], 0);
             t[first + list[l]] = best.t;

@@ -17,11 +17,7 @@ void MCR_ISA_NAME(mcr_list_closest)(const struct mcr_accel *accel, const struct 
     for (uint32_t first = 0; first < rays->n; first += MCR_ACCEL_BLOCK) {
         struct mcr_block b;
         block_run(accel, rays, first, NULL, &b);
-        MCR_LANES
-        for (uint32_t i = 0; i < b.count; i++) {
-            t[first + i] = b.t[i];
-            primitive[first + i] = (int64_t)b.primitive[i];
-        }
+        block_end(&b, t + first, primitive + first);
     }
 }
 

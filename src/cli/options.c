@@ -98,8 +98,8 @@ static int take_isa(struct mcr_options *options, const char *text)
     int32_t isa = mcr_cpu_isa_parse(text);
     if (isa < 0)
         return mcr_usage_error("--isa expects baseline, avx2 or avx512, not '%s'", text);
-    if ((uint32_t)isa > options->isa)
-        return mcr_usage_error("--isa %s: this processor or build has %s at most", text, mcr_cpu_isa_name(options->isa));
+    if ((uint32_t)isa > mcr_cpu_isa())
+        return mcr_usage_error("--isa %s: this processor or build has %s at most", text, mcr_cpu_isa_name(mcr_cpu_isa()));
     options->isa = (uint32_t)isa;
     return 0;
 }

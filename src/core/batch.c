@@ -262,15 +262,14 @@ void mcr_batch_fini(struct mcr_batch *batch)
     batch->memory = NULL;
 }
 
-void mcr_batch_judge(struct mcr_batch *batch, uint32_t begin, uint32_t n, const double *wanted, const struct mcr_directions *drawn, double *density)
+void mcr_batch_judge(struct mcr_batch *batch, uint32_t begin, uint32_t n, const struct mcr_directions *drawn, double *density)
 {
-    if (!batch->core->stages->unsound(n, density, drawn))
+    const struct mcr_stages *stages = batch->core->stages;
+    if (!stages->unsound(n, density, drawn))
         return;
     for (uint32_t i = 0; i < n; i++) {
-        struct mcr_directions one = {sizeof one, 1, NULL, NULL, NULL};
-        if (drawn)
-            one.x = drawn->x + i, one.y = drawn->y + i, one.z = drawn->z + i;
-        if ((wanted && wanted[i] == 0) || !batch->core->stages->unsound(1, density + i, drawn ? &one : NULL))
+        const struct mcr_directions one = {sizeof one, 1, drawn->x + i, drawn->y + i, drawn->z + i};
+        if (!stages->unsound(1, density + i, &one))
             continue;
         uint32_t slot = batch->sorted.slot[begin + i];
         batch->slot_r[slot] = batch->slot_g[slot] = batch->slot_b[slot] = NAN;

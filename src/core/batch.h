@@ -414,8 +414,8 @@ struct mcr_stages {
     void (*mirror)(struct mcr_batch *batch, const struct mcr_range *range);
     /* Throughput times f cos / density, and roulette; fills alive. */
     void (*scatter)(struct mcr_batch *batch, const struct mcr_range *range);
-    /* How many densities are negative, infinite or NaN, or their directions not of unit length; drawn NULL: densities alone. */
-    uint32_t (*unsound)(uint32_t n, const double *density, const struct mcr_directions *drawn);
+    /* Whether there is a density that is negative, infinite or NaN, or above 0 with a direction not of unit length. */
+    int (*unsound)(uint32_t n, const double *density, const struct mcr_directions *drawn);
     /* Makes rays of the living points and lists their lanes in `source`. */
     void (*compact)(struct mcr_batch *batch);
     /* out[i] = table[index[i]] */
@@ -446,10 +446,9 @@ struct mcr_inputs mcr_elsewhere_inputs(struct mcr_batch *batch, const struct mcr
 /* Inputs of a layer of the group that was asked for last. */
 struct mcr_inputs mcr_layer_inputs(const struct mcr_batch *batch, const struct mcr_layer *layer);
 /*
- * What a sampler plugin told of the points from `begin` on: densities, and the directions that it drew (NULL: none). Where they cannot be, the
- * sample becomes NaN, which is counted and located as such (loop.c), and the density 0. wanted: as in struct mcr_points.
+ * What a sampler plugin told of the n points from `begin` on: densities, and the directions that it drew. Where they cannot be, the sample becomes NaN, which is counted and located as such (loop.c), and the density 0.
  */
-void mcr_batch_judge(struct mcr_batch *batch, uint32_t begin, uint32_t n, const double *wanted, const struct mcr_directions *drawn, double *density);
+void mcr_batch_judge(struct mcr_batch *batch, uint32_t begin, uint32_t n, const struct mcr_directions *drawn, double *density);
 struct mcr_points mcr_batch_points(const struct mcr_batch *batch, uint32_t begin, uint32_t end);
 
 #endif

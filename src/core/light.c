@@ -136,7 +136,7 @@ static int32_t lookup(struct mcr_batch *batch, const struct mcr_range *range, co
     if (by_point)
         core->looks->clear(batch, range);
     if (!status)
-        mcr_batch_judge(batch, b, n, at->wanted, &toward, l->density + b);
+        mcr_batch_judge(batch, b, n, &toward, l->density + b);
     if (!status)
         status = mcr_group_evaluate(batch, range, &toward, &f);
     if (status)

@@ -250,8 +250,6 @@ static int32_t draw_range(struct mcr_batch *batch, const struct mcr_range *range
     if (!status)
         MCR_TIMED(MCR_STAGE_SAMPLER,
                   status = mcr_node_draw(batch, node, core->continuing, &at, (const double *const *)number + first, &toward, batch->density + b));
-    if (!status)
-        mcr_batch_judge(batch, b, n, at.wanted, &toward, batch->density + b);
     if (!status && core->combines)
         MCR_TIMED(MCR_STAGE_LIGHT, status = mcr_light_lookups(batch, range, &at, number));
     if (!status)

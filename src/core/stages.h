@@ -16,7 +16,7 @@ void MCR_ISA_NAME(mcr_stage_emit)(struct mcr_batch *batch, uint32_t begin, uint3
 void MCR_ISA_NAME(mcr_stage_background)(struct mcr_batch *batch);
 void MCR_ISA_NAME(mcr_stage_mirror)(struct mcr_batch *batch, const struct mcr_range *range);
 void MCR_ISA_NAME(mcr_stage_scatter)(struct mcr_batch *batch, const struct mcr_range *range);
-uint32_t MCR_ISA_NAME(mcr_stage_unsound)(uint32_t n, const double *density, const struct mcr_directions *drawn);
+int MCR_ISA_NAME(mcr_stage_unsound)(uint32_t n, const double *density, const struct mcr_directions *drawn);
 void MCR_ISA_NAME(mcr_stage_compact)(struct mcr_batch *batch);
 void MCR_ISA_NAME(mcr_stage_gather)(uint32_t n, const uint32_t *index, const double *table, double *out);
 void MCR_ISA_NAME(mcr_stage_point_choose)(struct mcr_batch *batch, const struct mcr_range *range, int both);

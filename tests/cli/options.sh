@@ -37,6 +37,8 @@ sets replaced precision double --precision double
 sets replaced accelerator list --accel list
 sets replaced accelerator list --accel auto
 sets replaced instruction_set baseline --isa baseline
+best=$("$MCRENDER" explain glow.scn --report - 2>/dev/null | sed -n 's/.*"instruction_set": "\(.*\)".*/\1/p')
+sets replaced instruction_set "$best" --isa baseline --isa "$best"
 sets replaced batch 64 --batch 64
 sets replaced replicates 3 --replicates 3
 sets "the scene's" roulette false
