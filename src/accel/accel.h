@@ -81,10 +81,10 @@ struct mcr_accel {
 };
 
 /*
- * Up to this many shapes and triangles `auto` takes the list. Both cost the same, by `make bench` (list against bvh), at 30-65 shapes with the
- * baseline's instructions, at 45-65 with AVX2 and at 70-100 with AVX-512.
+ * Up to this many shapes and triangles `auto` takes the list. Both cost the same, in the rooms of `make bench` (list against bvh), at about 20 with
+ * the baseline's instructions, at 30 with AVX2 and at 35-60 with AVX-512.
  */
-#define MCR_ACCEL_LIST_LIMIT 96u
+#define MCR_ACCEL_LIST_LIMIT 32u
 
 /* kind: MCR_ACCEL_*; auto takes the list for few shapes. NULL when memory is short. */
 struct mcr_accel *mcr_accel_create(struct mcr_arena *arena, const struct mcr_scene *scene, uint32_t kind);

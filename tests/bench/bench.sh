@@ -83,7 +83,7 @@ echo
 echo "list against bvh, one thread: a room of 6 quads and N shapes, 256 x 256, 4 spp; million rays/s, the best of 3 interleaved runs"
 printf '  %-10s %5s %8s %8s %10s   %s\n' shapes N list bvh 'bvh/list' "auto chooses"
 for kind in sphere triangle; do
-    for n in 4 16 64 128 256 512 1024 2048; do
+    for n in 4 16 24 32 48 64 96 128 256 512 1024 2048; do
         crowd $n $kind >"$TMPDIR/crowd.scn"
         : >"$TMPDIR/list.rays"
         : >"$TMPDIR/bvh.rays"

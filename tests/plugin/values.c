@@ -137,12 +137,12 @@ static void test_materials(void)
     bad("material w lambert { albedo 0.5   albedo 0.6 }",
         "a.scn:5:35: error: 'albedo' of 'lambert' is given twice, expected once\na.scn:5:22: note: the first one is here\n");
     bad("material l emitter { }", "a.scn:5:12: error: 'emitter' needs 'radiance', expected a colour: one number, or three as (red, green, blue)\n");
-    bad("material l emitter { radiance -1 }", "a.scn:5:31: error: 'radiance' of 'emitter' is -1, expected at least 0 W/(sr m^2)\n");
+    bad("material l emitter { radiance -1 }", "a.scn:5:31: error: 'radiance' of 'emitter' is -1, expected 0 to 1e+100 W/(sr m^2)\n");
     bad("material l emitter { radiance 1   sides both }", "a.scn:5:41: error: unknown word 'both' for 'sides' of 'emitter', expected one or two\n");
     bad("material l emitter { radiance 1   sides 2 }", "a.scn:5:41: error: 'sides' of 'emitter' is a number, expected a word\n");
     bad("material l emitter { radiance 1   sides \"two\" }", "a.scn:5:41: error: 'sides' of 'emitter' is a string, expected a word\n");
     bad("material l emitter { radiance -1   sides both   albedo 2 }",
-        "a.scn:5:31: error: 'radiance' of 'emitter' is -1, expected at least 0 W/(sr m^2)\n"
+        "a.scn:5:31: error: 'radiance' of 'emitter' is -1, expected 0 to 1e+100 W/(sr m^2)\n"
         "a.scn:5:42: error: unknown word 'both' for 'sides' of 'emitter', expected one or two\n"
         "a.scn:5:56: error: 'albedo' of 'emitter' is 2, expected 0 to 1\n");
 }
