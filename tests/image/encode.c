@@ -6,9 +6,9 @@
 
 #include <float.h>
 
-static const struct mcr_format integers = {"ppm", NULL, MCR_ENCODE_U8, MCR_ENCODE_U8, MCR_ENCODE_U16, 0};
-static const struct mcr_format floats = {"exr", NULL, MCR_ENCODE_FLOAT, MCR_ENCODE_FLOAT, MCR_ENCODE_FLOAT, 1};
-static const struct mcr_format shared = {"hdr", NULL, MCR_ENCODE_RGBE, MCR_ENCODE_RGBE, MCR_ENCODE_RGBE, 0};
+static const struct mcr_format integers = {"ppm", NULL, MCR_ENCODE_U8, MCR_ENCODE_U8, MCR_ENCODE_U16, 0, 0};
+static const struct mcr_format floats = {"exr", NULL, MCR_ENCODE_FLOAT, MCR_ENCODE_FLOAT, MCR_ENCODE_FLOAT, 1, 0};
+static const struct mcr_format shared = {"hdr", NULL, MCR_ENCODE_RGBE, MCR_ENCODE_RGBE, MCR_ENCODE_RGBE, 0, 0};
 
 static struct mcr_encoder encoder;
 
